@@ -1,0 +1,118 @@
+"""A robot by name, or from the TOML file its owner wrote; angles in degrees, lengths in mm.
+
+name = "magicbim"
+vehicle_length_mm = 875.0
+vehicle_width_mm = 830.0
+pivot_offset_mm = 142.0
+arm_length_mm = 995.0
+disc_radius_mm = 350.0
+swing_min_deg = -90.0
+swing_max_deg = 90.0
+"""
+
+import json
+import math
+import tomllib
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from satAOI_geo.errors import InputError, RobotError
+from satAOI_geo.robot import ROBOTS, Robot
+
+
+class RobotFile(BaseModel):
+    """The keys of a robot's file. No key is guessed and none is ignored."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+    name: str = Field("", max_length=100)
+    vehicle_length_mm: float
+    vehicle_width_mm: float
+    pivot_offset_mm: float
+    arm_length_mm: float
+    disc_radius_mm: float
+    swing_min_deg: float = -90.0
+    swing_max_deg: float = 90.0
+
+    def robot(self, *, unnamed: str) -> Robot:
+        """The robot these measures describe; `unnamed` is its name where the file gives none."""
+        return Robot(
+            name=self.name or unnamed,
+            vehicle_length_mm=self.vehicle_length_mm,
+            vehicle_width_mm=self.vehicle_width_mm,
+            pivot_offset_mm=self.pivot_offset_mm,
+            arm_length_mm=self.arm_length_mm,
+            disc_radius_mm=self.disc_radius_mm,
+            swing_min_rad=math.radians(self.swing_min_deg),
+            swing_max_rad=math.radians(self.swing_max_deg),
+        )
+
+
+def robot_from(name_or_file: str) -> Robot:
+    """The robot of this build with that name, or the one a TOML file describes.
+
+    Raises:
+        InputError: If it is neither a known name nor a readable robot file.
+        RobotError: If the measures in the file contradict each other.
+    """
+    if name_or_file in ROBOTS:
+        return ROBOTS[name_or_file]
+    if Path(name_or_file).suffix.lower() == ".toml":
+        return read(Path(name_or_file))
+    known = ", ".join(sorted(ROBOTS))
+    raise InputError(
+        f"no robot '{name_or_file}'; known are {known}, or give a file ending in .toml"
+    )
+
+
+def read(path: Path) -> Robot:
+    """The robot that a TOML file describes.
+
+    Raises:
+        InputError: If the file cannot be read, is not TOML, or lacks or misspells a key.
+        RobotError: If its measures contradict each other.
+    """
+    try:
+        with path.open("rb") as file:
+            keys = tomllib.load(file)
+    except OSError as error:
+        raise InputError(f"robot file '{path}': {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"robot file '{path}' is not TOML: {error}") from error
+    try:
+        return RobotFile.model_validate(keys).robot(unnamed=path.stem)
+    except ValidationError as error:
+        raise InputError(f"robot file '{path}': {first_fault(error)}") from error
+    except RobotError as error:
+        raise RobotError(f"robot file '{path}': {error}", measure=error.measure) from error
+
+
+def first_fault(error: ValidationError) -> str:
+    """The first key at fault and what is wrong with it, in one line."""
+    fault = error.errors(include_url=False)[0]
+    key = ".".join(str(step) for step in fault["loc"])
+    known = ", ".join(RobotFile.model_fields)
+    if fault["type"] == "extra_forbidden":
+        return f"unknown key '{key}'; known are {known}"
+    if fault["type"] == "missing":
+        return f"key '{key}' is missing; `satAOI-geo robots magicbim` prints a complete file"
+    return f"key '{key}' is {fault['input']!r}: {fault['msg']}"
+
+
+def toml_of(robot: Robot) -> str:
+    """The robot's file: what `read` turns into the same robot."""
+    # degrees of a radian value carry rounding in the last digit; a robot's file has round ones
+    swing_min_deg = round(math.degrees(robot.swing_min_rad), 9)
+    swing_max_deg = round(math.degrees(robot.swing_max_rad), 9)
+    return (
+        # a JSON string is a TOML string
+        f"name = {json.dumps(robot.name, ensure_ascii=False)}\n"
+        f"vehicle_length_mm = {robot.vehicle_length_mm!r}\n"
+        f"vehicle_width_mm = {robot.vehicle_width_mm!r}\n"
+        f"pivot_offset_mm = {robot.pivot_offset_mm!r}  # arm pivot to vehicle's centre\n"
+        f"arm_length_mm = {robot.arm_length_mm!r}  # disc's centre to arm pivot\n"
+        f"disc_radius_mm = {robot.disc_radius_mm!r}\n"
+        f"swing_min_deg = {swing_min_deg!r}  # 0 is straight behind the vehicle\n"
+        f"swing_max_deg = {swing_max_deg!r}\n"
+    )

@@ -1,0 +1,94 @@
+"""What a person sees: errors, notes and progress on standard error, tables on standard output."""
+
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from itertools import groupby
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:
+    from satAOI_geo.report import FindingFigures
+
+TOLD_OF_A_SORT = 3
+"""Findings of one sort told in full; a page of them would hide the figures."""
+
+
+def accept_any_text() -> None:
+    """Let no character of a layer or file name stop a line from being printed.
+
+    A name may hold characters the terminal's encoding lacks, or bytes that are no text at all.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        # a stream replaced by a caller need not be a text file
+        reconfigure = getattr(stream, "reconfigure", None)
+        if reconfigure is not None:
+            reconfigure(errors="backslashreplace")
+
+
+def say_error(message: str) -> None:
+    """One line, whatever the message holds."""
+    _say("error", "bold red", message)
+
+
+def say_note(message: str) -> None:
+    """One line of talk."""
+    _say("note", "yellow", message)
+
+
+def _say(word: str, style: str, message: str) -> None:
+    from rich.console import Console
+
+    console = Console(stderr=True, highlight=False, markup=False, soft_wrap=True)
+    console.print(f"{word}:", style=style, end=" ")
+    console.print(" ".join(message.split()))
+
+
+def say_findings(findings: Iterable["FindingFigures"]) -> None:
+    """The findings sort by sort, the first few of each in full and the number of the rest."""
+    of_a_sort = sorted(findings, key=lambda finding: finding.code)
+    for code, group in groupby(of_a_sort, key=lambda finding: finding.code):
+        same = list(group)
+        for finding in same[:TOLD_OF_A_SORT]:
+            say_note(sentence_of(finding))
+        if len(same) > TOLD_OF_A_SORT:
+            say_note(f"and {len(same) - TOLD_OF_A_SORT} more of '{code}'; --report lists all")
+
+
+def sentence_of(finding: "FindingFigures") -> str:
+    """What was found, where, and what to do about it."""
+    where = []
+    if finding.layer:
+        where.append(f"layer '{finding.layer}'")
+    if finding.handle:
+        where.append(f"handle {finding.handle}")
+    if finding.at_mm is not None:
+        where.append(f"at ({finding.at_mm[0]:.0f}, {finding.at_mm[1]:.0f}) mm")
+    place = f" [{', '.join(where)}]" if where else ""
+    remedy = f"; {finding.remedy}" if finding.remedy else ""
+    return f"{finding.message}{remedy}{place}"
+
+
+def write_table(rows: Sequence[Sequence[str]], stream: TextIO) -> None:
+    """Rows of text in aligned columns, two blanks apart; the last column is left as it is."""
+    if not rows:
+        return
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=True)]
+        stream.write("  ".join(cells).rstrip() + "\n")
+
+
+@contextmanager
+def progress(*, quiet: bool) -> Iterator[Callable[[str, float], None] | None]:
+    """A progress bar on a terminal, None elsewhere; it is gone when the work is done."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield None
+        return
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("", total=1.0)
+        yield lambda stage, share: bar.update(task, description=stage, completed=share)

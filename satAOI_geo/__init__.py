@@ -1,0 +1,92 @@
+"""The part of a floor that a swing-arm troweling robot can trowel.
+
+    from satAOI_adapters import read_plan, write_aoi
+    from satAOI_geo import area_of_interest
+
+    result = area_of_interest(read_plan("hall.dxf"))
+    print(result.report.aoi.area_m2)
+    write_aoi("aoi.dxf", result)
+
+The names below are the public ones, in reading order. Each is imported when it is first used,
+so that the command line starts without numpy, shapely and numba.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from satAOI_geo.aoi import Aoi, Loop, Outline
+    from satAOI_geo.errors import (
+        DrawingError,
+        EmptyPlanError,
+        InputError,
+        LimitError,
+        NothingFreeError,
+        RobotError,
+        SatAoiError,
+        StartBlockedError,
+        StartError,
+        UnitError,
+        UnreadableError,
+    )
+    from satAOI_geo.lattice import Lattice
+    from satAOI_geo.pipeline import Result, area_of_interest
+    from satAOI_geo.plan import Circle, Finding, FloorPlan, Frame, Kind, Obstacle, Source
+    from satAOI_geo.report import Report
+    from satAOI_geo.robot import ROBOTS, Pose, Robot
+    from satAOI_geo.units import MM_PER_UNIT
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "MM_PER_UNIT",
+    "ROBOTS",
+    "Aoi",
+    "Circle",
+    "DrawingError",
+    "EmptyPlanError",
+    "Finding",
+    "FloorPlan",
+    "Frame",
+    "InputError",
+    "Kind",
+    "Lattice",
+    "LimitError",
+    "Loop",
+    "NothingFreeError",
+    "Obstacle",
+    "Outline",
+    "Pose",
+    "Report",
+    "Result",
+    "Robot",
+    "RobotError",
+    "SatAoiError",
+    "Source",
+    "StartBlockedError",
+    "StartError",
+    "UnitError",
+    "UnreadableError",
+    "area_of_interest",
+]
+
+_NAMES_OF_MODULE = {
+    "pipeline": {"area_of_interest", "Result"},
+    "plan": {"FloorPlan", "Obstacle", "Kind", "Circle", "Finding", "Frame", "Source"},
+    "robot": {"Robot", "Pose", "ROBOTS"},
+    "lattice": {"Lattice"},
+    "aoi": {"Aoi", "Outline", "Loop"},
+    "report": {"Report"},
+    "units": {"MM_PER_UNIT"},
+}
+
+
+def __getattr__(name: str) -> object:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    home = next((home for home, names in _NAMES_OF_MODULE.items() if name in names), "errors")
+    return getattr(import_module(f"{__name__}.{home}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])
