@@ -89,8 +89,10 @@ def read(path: Path) -> Robot:
 
 
 def first_fault(error: ValidationError) -> str:
-    """The first key at fault and what is wrong with it, in one line."""
-    fault = error.errors(include_url=False)[0]
+    """One key at fault and what is wrong with it, in one line."""
+    faults = error.errors(include_url=False)
+    # a misspelt key is also a missing one; the misspelling says more
+    fault = min(faults, key=lambda fault: fault["type"] != "extra_forbidden")
     key = ".".join(str(step) for step in fault["loc"])
     known = ", ".join(RobotFile.model_fields)
     if fault["type"] == "extra_forbidden":
