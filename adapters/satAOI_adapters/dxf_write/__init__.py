@@ -1,0 +1,57 @@
+"""Write an area of interest into a DXF drawing.
+
+The input, where it is a DXF, is kept whole underneath; any other plan is first drawn on layers
+named FLOOR, WALL, COLUMN and so on, so that the drawing can be read again. On top come:
+
+    SATAOI-AOI         one solid hatch for each connected part, below everything else
+    SATAOI-AOI-EDGE    its outline, closed polylines with true arcs
+    SATAOI-START       the disc at the start
+    SATAOI-OBSTACLE    floor and obstacles as they were read, coloured by kind
+    SATAOI-NOTE        legend and figures beside the plan
+
+Whatever lay on these layers before is replaced. Each entity says in extended data (SATAOI) what
+it stands for; a record SATAOI in the root dictionary holds the settings of the run.
+"""
+
+from pathlib import Path
+
+from satAOI_adapters.dxf_write.document import base_document, file_bytes
+from satAOI_adapters.dxf_write.layers import add_layers
+from satAOI_adapters.dxf_write.metadata import add_appid, record_run
+from satAOI_adapters.dxf_write.note import draw_note
+from satAOI_adapters.dxf_write.scene import draw_area, draw_plan, draw_start, send_to_back
+from satAOI_adapters.files import refuse_unfit_target, written_whole
+from satAOI_geo.pipeline import Result
+
+__all__ = ["write"]
+
+
+def write(path: Path, result: Result) -> None:
+    """Write the input drawing with the area of interest drawn into it.
+
+    The same result gives the same bytes.
+
+    Args:
+        path: The DXF file to write.
+        result: The area of interest and the plan it was found on.
+
+    Raises:
+        InputError: If the file must not or cannot be written.
+        UnreadableError: If the input drawing is gone or was changed since it was read.
+    """
+    source = result.plan.source
+    inputs = [Path(source.path)] if source.path else []
+    refuse_unfit_target(path, inputs)
+    document = base_document(result.plan)
+    add_layers(document)
+    add_appid(document)
+    space = document.modelspace()
+    draw_plan(space, result)
+    hatches = draw_area(space, result)
+    draw_start(space, result)
+    draw_note(document, result)
+    send_to_back(document, hatches)
+    record_run(document, result)
+    data = file_bytes(document)
+    with written_whole(path, never_over=inputs) as stream:
+        stream.write(data)

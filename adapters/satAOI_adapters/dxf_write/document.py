@@ -1,0 +1,134 @@
+"""The drawing that is drawn into, and its bytes."""
+
+import contextlib
+import io
+from collections.abc import Iterator
+from hashlib import sha256
+from pathlib import Path
+from typing import Final
+
+import ezdxf
+import numpy as np
+from ezdxf import recover
+from ezdxf.document import Drawing
+from ezdxf.lldxf.const import DXF2010, DXFError
+
+from satAOI_adapters.dxf_write.layers import PREFIX
+from satAOI_adapters.dxf_write.pen import Pen
+from satAOI_geo.errors import UnreadableError
+from satAOI_geo.plan import FloorPlan, Source, polygons_in
+
+INSUNITS: Final = {
+    "in": 1,
+    "ft": 2,
+    "mi": 3,
+    "mm": 4,
+    "cm": 5,
+    "m": 6,
+    "km": 7,
+    "yd": 10,
+    "um": 13,
+    "dm": 14,
+}
+"""Value of the header variable $INSUNITS for a unit of length."""
+
+
+def base_document(plan: FloorPlan) -> Drawing:
+    """The drawing a plan came from, or a new one with the plan drawn on plain layers.
+
+    What an earlier run drew is taken out. The version is R2010, or the input's where that is
+    newer; the header's unit is the one the plan was read with.
+
+    Raises:
+        UnreadableError: If the drawing is gone or is not the one that was read.
+    """
+    from_dxf = plan.source.format == "dxf"
+    document = _opened(plan.source) if from_dxf else _drawn(plan)
+    document.dxfversion = max(document.dxfversion, DXF2010)
+    document.header["$INSUNITS"] = INSUNITS[plan.source.unit]
+    _remove_earlier_output(document)
+    return document
+
+
+def file_bytes(document: Drawing) -> bytes:
+    """The drawing as an ASCII DXF file; equal drawings give equal bytes.
+
+    Dates and GUIDs in the header are fixed, and classes that the library adds come in the order
+    of their names: it would take them from a set, in another order every time.
+    """
+    classes = document.classes.classes
+    loaded = set(classes)
+    document.classes.add_required_classes(document.dxfversion)
+    # the numbers of the input's own classes follow from their order, so that order is kept
+    for key in sorted(set(classes) - loaded):
+        classes[key] = classes.pop(key)
+    buffer = io.BytesIO()
+    text = io.TextIOWrapper(
+        buffer, encoding=document.output_encoding, errors="dxfreplace", newline="\n"
+    )
+    with _fixed_meta_data():
+        document.write(text)
+    text.flush()
+    return buffer.getvalue()
+
+
+def _opened(source: Source) -> Drawing:
+    """The input drawing, loaded as it stands where possible.
+
+    A damaged one is loaded with repairs, as the reader did, which reported them; what cannot be
+    repaired is then missing from the output too.
+    """
+    path = Path(source.path)
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise UnreadableError(f"cannot read '{path}' again: {error.strerror}") from error
+    if source.sha256 and sha256(data).hexdigest() != source.sha256:
+        raise UnreadableError(f"'{path}' was changed while it was worked on; run again")
+    try:
+        return ezdxf.readfile(path)
+    except (DXFError, ValueError, OSError):
+        return recover.readfile(path)[0]
+
+
+def _drawn(plan: FloorPlan) -> Drawing:
+    """A new drawing of a plan, on layers named after the kinds of obstacles."""
+    document = ezdxf.new(DXF2010)
+    floor_pen = Pen(document.modelspace(), plan.frame, "FLOOR")
+    for polygon in polygons_in([plan.floor]):
+        floor_pen.shape(polygon)
+    for obstacle in plan.obstacles:
+        Pen(document.modelspace(), plan.frame, obstacle.kind.name).shape(obstacle.shape)
+    for layer in sorted({entity.dxf.layer for entity in document.modelspace()}):
+        document.layers.add(layer)
+    _look_at_floor(document, plan)
+    return document
+
+
+def _look_at_floor(document: Drawing, plan: FloorPlan) -> None:
+    """Open the drawing with the whole floor in view, and room for the note beside it."""
+    left, bottom, right, top = plan.floor.bounds
+    corners = plan.frame.to_drawing([(left, bottom), (right, bottom), (right, top), (left, top)])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    document.set_modelspace_vport(
+        height=1.2 * float(np.max(high - low)), center=tuple((low + high) / 2)
+    )
+
+
+def _remove_earlier_output(document: Drawing) -> None:
+    """Take everything on this program's layers out of model space."""
+    space = document.modelspace()
+    for entity in list(space):
+        if entity.dxf.layer.upper().startswith(PREFIX):
+            space.delete_entity(entity)
+
+
+@contextlib.contextmanager
+def _fixed_meta_data() -> Iterator[None]:
+    """While this lasts, the library writes constant dates and GUIDs."""
+    before = ezdxf.options.write_fixed_meta_data_for_testing
+    ezdxf.options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        ezdxf.options.write_fixed_meta_data_for_testing = before

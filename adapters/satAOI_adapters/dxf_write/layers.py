@@ -1,0 +1,65 @@
+"""The layers and colours of what is drawn; the only place they are chosen."""
+
+from dataclasses import dataclass
+from typing import Final
+
+from ezdxf.document import Drawing
+
+from satAOI_geo.plan import Kind
+
+PREFIX: Final = "SATAOI-"
+"""Layers whose names begin so belong to this program: what lies on them is replaced."""
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """How a layer looks. Names are ASCII, since programs disagree on the encoding of others.
+
+    Attributes:
+        name: Of the layer.
+        colour: AutoCAD colour index, 1 to 255.
+        lineweight: In hundredths of a millimetre on paper.
+        description: For the layer manager.
+    """
+
+    name: str
+    colour: int
+    lineweight: int
+    description: str
+
+
+AOI: Final = Style("SATAOI-AOI", 71, 13, "floor the robot can trowel, one hatch a part")
+EDGE: Final = Style("SATAOI-AOI-EDGE", 94, 50, "outline of that floor, with true arcs")
+START: Final = Style("SATAOI-START", 6, 35, "disc of the robot where it starts")
+OBSTACLE: Final = Style("SATAOI-OBSTACLE", 8, 25, "floor and obstacles as they were read")
+NOTE: Final = Style("SATAOI-NOTE", 7, 18, "legend and figures")
+
+STYLES: Final = (AOI, EDGE, START, OBSTACLE, NOTE)
+
+AOI_TRANSPARENCY: Final = 0.5
+"""For programs that know it; the others show the walls because the fill is the first entity."""
+
+KIND_COLOURS: Final = {
+    Kind.WALL: 1,
+    Kind.COLUMN: 5,
+    Kind.HOLE: 200,
+    Kind.EMBEDDED: 30,
+    Kind.EQUIPMENT: 132,
+    Kind.UNCLASSIFIED: 42,
+}
+"""Colour index of an obstacle's outline: red, blue, violet, orange, teal, ochre."""
+
+
+def add_layers(document: Drawing) -> None:
+    """Create the layers, or give those of an earlier run their looks again, switched on."""
+    for style in STYLES:
+        layer = (
+            document.layers.get(style.name)
+            if style.name in document.layers
+            else document.layers.add(style.name)
+        )
+        layer.on()
+        layer.thaw()
+        layer.color = style.colour
+        layer.dxf.lineweight = style.lineweight
+        layer.description = style.description

@@ -1,0 +1,64 @@
+"""Files that appear whole or not at all."""
+
+import contextlib
+import os
+import secrets
+import shutil
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import BinaryIO
+
+from satAOI_geo.errors import InputError
+
+
+@contextlib.contextmanager
+def written_whole(path: Path, *, never_over: Iterable[Path] = ()) -> Iterator[BinaryIO]:
+    """A stream whose bytes appear under a name at once, when the block ends without an error.
+
+    The bytes go to a temporary file in the same folder, to the disk, and only then to the name:
+    a reader sees the old file or the new one, and after an error the old one and nothing else.
+
+    Args:
+        path: The file to write; an ordinary file of that name is replaced.
+        never_over: Files that were read and must survive; those that do not exist are no matter.
+
+    Raises:
+        InputError: If the name is that of an input, a link or a folder, its folder does not
+            exist, or the file cannot be written.
+    """
+    refuse_unfit_target(path, never_over)
+    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")
+    try:
+        with temporary.open("xb") as stream:
+            yield stream
+            stream.flush()
+            os.fsync(stream.fileno())
+        if path.exists():
+            shutil.copymode(path, temporary)
+        temporary.replace(path)
+    except OSError as error:
+        raise InputError(f"cannot write '{path}': {error.strerror or error}") from error
+    finally:
+        # gone already when all went well
+        temporary.unlink(missing_ok=True)
+
+
+def refuse_unfit_target(path: Path, never_over: Iterable[Path] = ()) -> None:
+    """Say early that a file must not be written.
+
+    Raises:
+        InputError: As in `written_whole`, except for what only shows when writing.
+    """
+    if path.is_symlink():
+        raise InputError(f"'{path}' is a symbolic link; name the file itself")
+    if path.exists() and not path.is_file():
+        raise InputError(f"'{path}' is not an ordinary file; give another name")
+    if not path.parent.is_dir():
+        raise InputError(f"there is no folder '{path.parent}'; create it or give another name")
+    if any(_same_file(path, read) for read in never_over):
+        raise InputError(f"'{path}' is an input and is never written over; give another name")
+
+
+def _same_file(one: Path, other: Path) -> bool:
+    """Whether two names lead to one file that exists."""
+    return one.exists() and other.exists() and one.samefile(other)
