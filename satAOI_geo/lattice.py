@@ -6,17 +6,24 @@ Nodes are the centres of square cells that cover the floor's bounds; node [row, 
 
 import math
 from dataclasses import dataclass
+from typing import Final, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from satAOI_geo.errors import InputError, LimitError
-from satAOI_geo.plan import FloatArray
+from satAOI_geo.plan import BoolArray, FloatArray
 from satAOI_geo.robot import Pose, Robot
 
-MAX_NODES = 400_000_000
-"""40 000 m² at 10 mm: more does not fit the memory of the machines this is run on."""
+MAX_NODES: Final = 100_000_000
+"""10 000 m² at 10 mm: its 312 poses take 4 GB."""
 
-CELL_SLACK = 1e-9
+WORD_BITS: Final = 64
+
+Words: TypeAlias = npt.NDArray[np.uint64]
+"""Nodes as bits, shape (..., n_rows, n_words): node [iy, ix] is bit ix % 64 of word [iy, ix // 64]."""
+
+CELL_SLACK: Final = 1e-9
 """Share of a cell that rounding may add to an extent that is a whole number of cells."""
 
 
@@ -56,9 +63,7 @@ class Lattice:
             LimitError: If there would be more than `MAX_NODES` nodes.
         """
         if not (math.isfinite(step_mm) and step_mm > 0):
-            raise InputError(
-                f"the lattice step is {step_mm:g} mm; give a length above 0"
-            )
+            raise InputError(f"the lattice step is {step_mm:g} mm; give a length above 0")
         if n_directions < 4 or n_directions % 4:
             raise InputError(
                 f"{n_directions} directions asked for; give a multiple of 4, for example 24"
@@ -128,6 +133,30 @@ class Lattice:
     def pose(self, iy: int, ix: int, a1: int, swing: int) -> Pose:
         """The pose at node (iy, ix) with direction number a1 and swing number `swing`."""
         turn_rad = 2 * math.pi / self.n_directions
-        return Pose(
-            self.x_mm(ix), self.y_mm(iy), a1 * turn_rad, self.swings[swing] * turn_rad
-        )
+        return Pose(self.x_mm(ix), self.y_mm(iy), a1 * turn_rad, self.swings[swing] * turn_rad)
+
+    def no_nodes(self) -> Words:
+        """No node at all: every bit clear but those beyond the last column, which are set.
+
+        That way the complement of a set of blocked nodes holds nodes only.
+        """
+        words = np.zeros((self.n_rows, -(-self.n_columns // WORD_BITS)), dtype=np.uint64)
+        used = self.n_columns % WORD_BITS
+        if used:
+            words[:, -1] = np.uint64(((1 << WORD_BITS) - 1) ^ ((1 << used) - 1))
+        return words
+
+    def packed(self, nodes: BoolArray) -> Words:
+        """Booleans, shape (n_rows, n_columns), as bits; those beyond the last column are set."""
+        words = self.no_nodes()
+        octets = np.packbits(nodes, axis=-1, bitorder="little")
+        padded = np.zeros((self.n_rows, words.shape[1] * WORD_BITS // 8), dtype=np.uint8)
+        padded[:, : octets.shape[1]] = octets
+        words |= padded.view("<u8")
+        return words
+
+    def unpacked(self, words: Words) -> BoolArray:
+        """Bits, shape (n_rows, n_words), as booleans, shape (n_rows, n_columns)."""
+        octets = np.ascontiguousarray(words, dtype="<u8").view(np.uint8)
+        bits = np.unpackbits(octets, axis=-1, count=self.n_columns, bitorder="little")
+        return bits.view(np.bool_)

@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -17,9 +17,19 @@ from shapely.geometry import LineString, MultiPolygon, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
+BoolArray: TypeAlias = npt.NDArray[np.bool_]
 Region: TypeAlias = Polygon | MultiPolygon
 
-CIRCLE_SEGMENTS = 720
+CONTACT_MM: Final = 1e-4
+"""Sets closer than this are in contact.
+
+Walls and lattice both sit on round millimetres, so a distance of exactly the disc's radius is the
+rule. A tenth of a micrometre is far above the rounding of georeferenced coordinates (1e-6 mm) and
+far below any drawing's precision, so every route through the code, and every shifted, turned or
+re-exported copy of a drawing, decides such a tie the same way.
+"""
+
+CIRCLE_SEGMENTS: Final = 720
 """Corners of the polygon that stands for a circle in areas and pictures, never in a contact test."""
 
 

@@ -45,11 +45,7 @@ def unit(angle_rad: float) -> FloatArray:
     quarters = round(angle_rad / (math.pi / 2))
     rest_rad = angle_rad - quarters * (math.pi / 2)
     # what is left of a quarter turn after rounding is noise below 1e-15 rad per turn
-    cos, sin = (
-        (1.0, 0.0)
-        if abs(rest_rad) < 1e-14
-        else (math.cos(rest_rad), math.sin(rest_rad))
-    )
+    cos, sin = (1.0, 0.0) if abs(rest_rad) < 1e-14 else (math.cos(rest_rad), math.sin(rest_rad))
     quarter_turned = ((cos, sin), (-sin, cos), (-cos, -sin), (sin, -cos))
     return np.array(quarter_turned[quarters % 4]) + 0.0
 

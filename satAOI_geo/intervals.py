@@ -1,0 +1,277 @@
+"""Nodes at which a convex part touches something, exactly, a row interval at a time.
+
+For a convex part K of the robot (corners relative to the disc centre, radius r) and a convex
+piece P of an obstacle (radius s), the disc centres at which they touch are
+
+    P ⊕ (-K) ⊕ disc(r + s + clearance + CONTACT_MM)
+
+which is convex, so each lattice row meets it in one closed interval: circles about the corners,
+offset lines along the sides. One kernel walks both flanks of that shape upwards, row by row, and
+sets the interval's bits. No pixels are involved; `collision` is the reference it is held to.
+
+Coordinates inside the kernels are lattice units: node [iy, ix] lies at (ix, iy).
+"""
+
+import math
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+import numpy.typing as npt
+import shapely
+from shapely.geometry import LineString, Polygon
+from shapely.geometry.polygon import orient
+
+from satAOI_geo.lattice import Lattice, Words
+from satAOI_geo.plan import CONTACT_MM, Circle, FloatArray, FloorPlan, Shape, polygons_in
+from satAOI_geo.robot import Part, Robot
+
+
+@dataclass(frozen=True, slots=True)
+class Pieces:
+    """Convex pieces whose union is every obstacle and the outside of the floor, in lattice units.
+
+    Attributes:
+        x: Shape (n,), corners of all pieces, each piece counter-clockwise from its lowest,
+            then leftmost corner. One corner is a circle, two are a segment.
+        y: Shape (n,).
+        first: Shape (m + 1,), where each piece starts in x and y.
+        radius: Shape (m,), how far each piece reaches beyond its corners.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    first: npt.NDArray[np.int64]
+    radius: FloatArray
+
+    @classmethod
+    def of(cls, plan: FloorPlan, lattice: Lattice, margin_mm: float) -> "Pieces":
+        """The pieces of a plan; the outside of the floor reaches out to the margin."""
+        outside = polygons_in([plan.outside(margin_mm)])
+        shapes: list[Shape] = [*(o.shape for o in plan.obstacles), *outside]
+        corners, radii_mm = [], []
+        for shape in shapes:
+            for piece_mm in _convex_pieces(shape):
+                corners.append(_in_lattice_units(piece_mm, lattice))
+                radii_mm.append(shape.radius_mm if isinstance(shape, Circle) else 0.0)
+        x, y = np.concatenate(corners).T
+        first = np.cumsum([0, *(len(c) for c in corners)])
+        return cls(
+            np.ascontiguousarray(x),
+            np.ascontiguousarray(y),
+            first.astype(np.int64),
+            np.array(radii_mm) / lattice.step_mm,
+        )
+
+
+class Intervals:
+    """The fast engine: tells where a part touches something by row intervals.
+
+    Args:
+        plan: The floor and its obstacles.
+        robot: The robot whose parts, at rest or swept by one move, will be asked for.
+        lattice: Nodes and directions.
+        clearance_mm: Distance to keep beyond contact.
+    """
+
+    def __init__(
+        self, plan: FloorPlan, robot: Robot, lattice: Lattice, clearance_mm: float = 0.0
+    ) -> None:
+        self._lattice = lattice
+        self._keep_mm = clearance_mm + CONTACT_MM
+        # a swept part reaches beyond the robot by one step, or by the push of its convex hull
+        # beyond the arc, which is largest, half as far again, at four directions
+        margin_mm = 1.5 * robot.reach_mm + lattice.step_mm + self._keep_mm
+        self._pieces = Pieces.of(plan, lattice, margin_mm)
+
+    def blocked(self, part: Part) -> Words:
+        """Nodes at which the part touches something, and every bit beyond the last column."""
+        lattice, pieces = self._lattice, self._pieces
+        words = lattice.no_nodes()
+        # -K: a half turn keeps the sense of rotation
+        mirrored = _from_lowest(-part.corners_mm / lattice.step_mm)
+        _block(
+            words,
+            lattice.n_columns,
+            np.ascontiguousarray(mirrored[:, 0]),
+            np.ascontiguousarray(mirrored[:, 1]),
+            (part.radius_mm + self._keep_mm) / lattice.step_mm,
+            pieces.x,
+            pieces.y,
+            pieces.first,
+            pieces.radius,
+        )
+        return words
+
+
+def _convex_pieces(shape: Shape) -> list[FloatArray]:
+    """Corners of convex polygons, segments or a point whose union is the shape."""
+    if isinstance(shape, Circle):
+        return [np.array([(shape.x_mm, shape.y_mm)])]
+    if isinstance(shape, LineString):
+        chain_mm = np.asarray(shape.coords)[:, :2]
+        return [chain_mm[i : i + 2] for i in range(len(chain_mm) - 1)]
+    if not shape.interiors and shape.area == shape.convex_hull.area:
+        return [_corners(shape)]
+    return [_corners(t) for t in polygons_in([shapely.constrained_delaunay_triangles(shape)])]
+
+
+def _corners(polygon: Polygon) -> FloatArray:
+    """Corners of a polygon, counter-clockwise, the first not repeated."""
+    return np.asarray(orient(polygon).exterior.coords)[:-1, :2]
+
+
+def _in_lattice_units(points_mm: FloatArray, lattice: Lattice) -> FloatArray:
+    """Points with node [iy, ix] at (ix, iy), from the lowest, then leftmost one on."""
+    return _from_lowest((points_mm - np.array(lattice.origin_mm)) / lattice.step_mm - 0.5)
+
+
+def _from_lowest(corners: FloatArray) -> FloatArray:
+    """The same ring of corners, starting at the lowest, then leftmost one."""
+    lowest = np.lexsort((corners[:, 0], corners[:, 1]))[0]
+    return np.roll(corners, -lowest, axis=0)
+
+
+@numba.njit(nogil=True, cache=True)
+def _block(words, n_columns, part_x, part_y, reach, x, y, first, radius):  # type: ignore[no-untyped-def]
+    """Set the bits of the lattice points in (piece ⊕ part) ⊕ disc(reach + radius), piece by piece.
+
+    The part is already turned by 180°. Lowest corner + lowest corner is the lowest corner of the
+    sum, and its other corners follow by taking the edges of both in the order of their direction.
+    """
+    n_rows = words.shape[0]
+    longest = 0
+    for piece in range(radius.size):
+        longest = max(longest, first[piece + 1] - first[piece])
+    sum_x = np.empty(longest + part_x.size + 1)
+    sum_y = np.empty(longest + part_x.size + 1)
+    left = np.empty(n_rows)
+    right = np.empty(n_rows)
+    for piece in range(radius.size):
+        begin, end = first[piece], first[piece + 1]
+        n_corners, n_rising = _minkowski_sum(
+            x[begin:end], y[begin:end], part_x, part_y, sum_x, sum_y
+        )
+        r = reach + radius[piece]
+        highest = sum_y[n_rising]
+        low = max(0, math.ceil(sum_y[0] - r))
+        high = min(n_rows - 1, math.floor(highest + r))
+        if low > high:
+            continue
+        _right_flank(sum_x, sum_y, n_rising, r, low, high, right)
+        _left_flank(sum_x, sum_y, n_rising, n_corners, r, low, high, left)
+        for iy in range(low, high + 1):
+            begin_ix = max(0, math.ceil(left[iy]))
+            end_ix = min(n_columns - 1, math.floor(right[iy]))
+            if begin_ix <= end_ix:
+                set_bits(words[iy], begin_ix, end_ix)
+
+
+@numba.njit(nogil=True, cache=True)
+def _minkowski_sum(ax, ay, bx, by, sum_x, sum_y):  # type: ignore[no-untyped-def]
+    """Corners of the sum of two convex polygons, the first corner again at the end.
+
+    Both start at their lowest, then leftmost corner and run counter-clockwise. Returns the number
+    of edges and the number of those that rise (direction in [0°, 180°)): the right flank.
+    """
+    n_a = ax.size if ax.size > 1 else 0
+    n_b = bx.size if bx.size > 1 else 0
+    sum_x[0], sum_y[0] = ax[0] + bx[0], ay[0] + by[0]
+    i = j = n = n_rising = 0
+    while i < n_a or j < n_b:
+        a, a_next = i % ax.size, (i + 1) % ax.size
+        b, b_next = j % bx.size, (j + 1) % bx.size
+        adx, ady = ax[a_next] - ax[a], ay[a_next] - ay[a]
+        bdx, bdy = bx[b_next] - bx[b], by[b_next] - by[b]
+        # rising edges before falling ones, so that the cross product only ever compares
+        # directions within the same half turn: parallel edges of a segment cannot be confused
+        a_rises = ady > 0.0 or (ady == 0.0 and adx > 0.0)
+        b_rises = bdy > 0.0 or (bdy == 0.0 and bdx > 0.0)
+        if i == n_a:
+            take_a, take_b = False, True
+        elif j == n_b:
+            take_a, take_b = True, False
+        elif a_rises != b_rises:
+            take_a, take_b = a_rises, b_rises
+        else:
+            cross = adx * bdy - ady * bdx
+            take_a, take_b = cross >= 0.0, cross <= 0.0
+        n += 1
+        rises = (take_a and a_rises) or (take_b and b_rises)
+        i += take_a
+        j += take_b
+        sum_x[n] = ax[i % ax.size] + bx[j % bx.size]
+        sum_y[n] = ay[i % ax.size] + by[j % bx.size]
+        if rises:
+            n_rising = n
+    return n, n_rising
+
+
+@numba.njit(nogil=True, cache=True)
+def _right_flank(x, y, n_rising, r, low, high, right):  # type: ignore[no-untyped-def]
+    """Greatest x of the rounded polygon in each row from low to high, going up its right side."""
+    iy = low
+    vx, vy = x[0], y[0]
+    for k in range(1, n_rising + 1):
+        dx, dy = x[k] - vx, y[k] - vy
+        if dy > 0.0:
+            length = math.hypot(dx, dy)
+            nx, ny = dy / length, -dx / length
+            iy = _arc(vx, vy, r, 1.0, iy, min(high, vy + r * ny), right)
+            iy = _line(vx + r * nx, vy + r * ny, dx / dy, iy, min(high, y[k] + r * ny), right)
+        vx, vy = x[k], y[k]
+    _arc(vx, vy, r, 1.0, iy, high, right)
+
+
+@numba.njit(nogil=True, cache=True)
+def _left_flank(x, y, n_rising, n_corners, r, low, high, left):  # type: ignore[no-untyped-def]
+    """Least x of the rounded polygon in each row from low to high, going up its left side."""
+    iy = low
+    vx, vy = x[0], y[0]
+    for k in range(n_corners - 1, n_rising - 1, -1):
+        dx, dy = x[k] - vx, y[k] - vy
+        if dy > 0.0:
+            length = math.hypot(dx, dy)
+            nx, ny = -dy / length, dx / length
+            iy = _arc(vx, vy, r, -1.0, iy, min(high, vy + r * ny), left)
+            iy = _line(vx + r * nx, vy + r * ny, dx / dy, iy, min(high, y[k] + r * ny), left)
+        elif dx > 0.0:
+            # the level top, met from its left end: the arc about that end takes all rows left
+            break
+        vx, vy = x[k], y[k]
+    _arc(vx, vy, r, -1.0, iy, high, left)
+
+
+@numba.njit(nogil=True, cache=True)
+def _arc(vx, vy, r, side, iy, last, flank):  # type: ignore[no-untyped-def]
+    """Fill rows from iy up to `last` with the circle of radius r about (vx, vy); next row."""
+    while iy <= last:
+        rise = iy - vy
+        flank[iy] = vx + side * math.sqrt(max(0.0, r * r - rise * rise))
+        iy += 1
+    return iy
+
+
+@numba.njit(nogil=True, cache=True)
+def _line(x0, y0, slope, iy, last, flank):  # type: ignore[no-untyped-def]
+    """Fill rows from iy up to `last` with the line through (x0, y0); next row."""
+    while iy <= last:
+        flank[iy] = x0 + (iy - y0) * slope
+        iy += 1
+    return iy
+
+
+@numba.njit(nogil=True, cache=True)
+def set_bits(row, begin, end):  # type: ignore[no-untyped-def]
+    """Set bits begin .. end of a row of words."""
+    every = np.uint64(0xFFFFFFFFFFFFFFFF)
+    first_word, last_word = begin >> 6, end >> 6
+    first_mask = every << np.uint64(begin & 63)
+    last_mask = every >> np.uint64(63 - (end & 63))
+    if first_word == last_word:
+        row[first_word] |= first_mask & last_mask
+        return
+    row[first_word] |= first_mask
+    for word in range(first_word + 1, last_word):
+        row[word] = every
+    row[last_word] |= last_mask

@@ -1,0 +1,131 @@
+"""Where the robot can get to: connected sets of nodes and of states.
+
+The disc-connected sets are the paper's rule: neighbouring nodes are joined when each has some free
+pose, whether or not a motion leads from the one pose to the other. They are an upper estimate.
+
+The pose-connected sets join states (node, a1, swing) by moves whose whole sweep is free: what one
+set holds, the robot can really get to from any of its states. A vehicle that turns on the spot can
+follow any path through open free space as closely as wanted; how many manoeuvres that takes is
+not bounded.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from threading import Lock
+
+import numpy as np
+import numpy.typing as npt
+import scipy.ndimage
+
+from satAOI_geo.freespace import Engine, FreeSpace, moves, run_threads, steps_right
+from satAOI_geo.lattice import Lattice
+from satAOI_geo.plan import BoolArray
+from satAOI_geo.robot import Robot
+from satAOI_geo.runs import Runs, SliceRuns, extents, join, paint, roots
+
+
+@dataclass(frozen=True, slots=True)
+class DiscComponents:
+    """The disc-connected sets.
+
+    Attributes:
+        labels: Shape (n_rows, n_columns): number of each node's set, or -1 where no pose is free.
+        boxes: Shape (n, 4), least row, least column, greatest row, greatest column of each set.
+    """
+
+    labels: npt.NDArray[np.int32]
+    boxes: npt.NDArray[np.int64]
+
+    @classmethod
+    def of(cls, free: BoolArray) -> "DiscComponents":
+        """Sets of free nodes joined by their 8 neighbours: what Algorithm 2 searches."""
+        labels, _ = scipy.ndimage.label(free, structure=np.ones((3, 3)))
+        windows = scipy.ndimage.find_objects(labels)
+        boxes = [(rows.start, cols.start, rows.stop - 1, cols.stop - 1) for rows, cols in windows]
+        return cls(labels.astype(np.int32) - 1, np.array(boxes, dtype=np.int64).reshape(-1, 4))
+
+    def at_node(self, iy: int, ix: int) -> list[int]:
+        """The sets that hold a node: one, or none where no pose is free."""
+        label = int(self.labels[iy, ix])
+        return [] if label < 0 else [label]
+
+    def nodes(self, label: int) -> BoolArray:
+        """The nodes of one set, shape (n_rows, n_columns)."""
+        return self.labels == label
+
+
+@dataclass(frozen=True, slots=True)
+class PoseComponents:
+    """The pose-connected sets.
+
+    Attributes:
+        lattice: Nodes and directions.
+        runs: The states, as runs.
+        labels: Shape (n_runs,): number of each run's set.
+        boxes: Shape (n, 4), least row, least column, greatest row, greatest column of each set.
+    """
+
+    lattice: Lattice
+    runs: Runs
+    labels: npt.NDArray[np.int32]
+    boxes: npt.NDArray[np.int64]
+
+    @classmethod
+    def of(
+        cls,
+        engine: Engine,
+        robot: Robot,
+        space: FreeSpace,
+        progress: Callable[[float], None] | None = None,
+    ) -> "PoseComponents":
+        """Join all free states by all moves whose sweep is free."""
+        n_directions = space.lattice.n_directions
+        slices: list[list[SliceRuns]] = [[] for _ in range(n_directions)]
+
+        def gather(a1: int) -> None:
+            rights = steps_right(engine, robot, space, a1)
+            slices[a1] = [
+                SliceRuns.of(free, right)
+                for free, right in zip(space.words[a1], rights, strict=True)
+            ]
+
+        run_threads(gather, n_directions, progress and (lambda share: progress(share / 4)))
+        runs = Runs.joined(slices)
+        parents = np.arange(runs.begin.size, dtype=np.int32)
+        one_at_a_time = Lock()
+
+        def connect(a1: int) -> None:
+            for move in moves(engine, robot, space, a1):
+                with one_at_a_time:
+                    join(
+                        parents,
+                        runs,
+                        pose=(move.a1, move.swing),
+                        to_pose=(move.to_a1, move.to_swing),
+                        rows_up=move.rows_up,
+                        allowed=move.allowed,
+                    )
+
+        run_threads(
+            connect, n_directions, progress and (lambda share: progress((1 + 3 * share) / 4))
+        )
+        lowest, labels = np.unique(roots(parents), return_inverse=True)
+        labels = labels.astype(np.int32)
+        return cls(space.lattice, runs, labels, extents(runs, labels, lowest.size)[:, :4])
+
+    def at(self, iy: int, ix: int, a1: int, swing: int) -> int | None:
+        """The set that holds a state, or None when the state is not free."""
+        run = self.runs.at(iy, ix, a1, swing)
+        return None if run is None else int(self.labels[run])
+
+    def at_node(self, iy: int, ix: int) -> list[int]:
+        """The sets that hold some pose at a node, ascending."""
+        poses = np.ndindex(*self.runs.first.shape[:2])
+        found = {self.at(iy, ix, a1, swing) for a1, swing in poses}
+        return sorted(label for label in found if label is not None)
+
+    def nodes(self, label: int) -> BoolArray:
+        """The nodes at which the set has some pose, shape (n_rows, n_columns)."""
+        words = self.lattice.no_nodes()
+        paint(words, self.runs, self.labels == label)
+        return self.lattice.unpacked(words)

@@ -1,0 +1,242 @@
+"""States gathered into runs, and runs joined into components.
+
+A run is a stretch of nodes in one row at one pose through which the disc can step. The 6·10⁸
+states of a hall make some 10⁶ runs; connectivity is union-find over these.
+"""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from satAOI_geo.intervals import set_bits
+from satAOI_geo.lattice import Words
+
+IntArray: TypeAlias = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Runs:
+    """All runs, ordered by pose, row and column.
+
+    Attributes:
+        first: Shape (n_directions, n_swings, n_rows + 1): the runs of row iy at a pose are those
+            from first[a1, swing, iy] up to, not including, first[a1, swing, iy + 1].
+        begin: Shape (n_runs,), first column of each run.
+        end: Shape (n_runs,), last column of each run.
+    """
+
+    first: IntArray
+    begin: npt.NDArray[np.int32]
+    end: npt.NDArray[np.int32]
+
+    @classmethod
+    def joined(cls, slices: list[list["SliceRuns"]]) -> "Runs":
+        """The runs of all poses, given as slices[a1][swing]."""
+        flat = [one for row in slices for one in row]
+        offsets = np.cumsum([0, *(one.begin.size for one in flat)])
+        first = np.array([one.first for one in flat]) + offsets[:-1, np.newaxis]
+        return cls(
+            first.reshape(len(slices), len(slices[0]), -1),
+            np.concatenate([one.begin for one in flat]),
+            np.concatenate([one.end for one in flat]),
+        )
+
+    def at(self, iy: int, ix: int, a1: int, swing: int) -> int | None:
+        """The run that holds a state, or None when the state is not free."""
+        low, high = self.first[a1, swing, iy], self.first[a1, swing, iy + 1]
+        run = low + int(np.searchsorted(self.begin[low:high], ix, side="right")) - 1
+        return int(run) if run >= low and ix <= self.end[run] else None
+
+
+@dataclass(frozen=True, slots=True)
+class SliceRuns:
+    """The runs of one pose: `first` has shape (n_rows + 1,)."""
+
+    first: IntArray
+    begin: npt.NDArray[np.int32]
+    end: npt.NDArray[np.int32]
+
+    @classmethod
+    def of(cls, free: Words, right: Words) -> "SliceRuns":
+        """The runs of one pose from its free nodes and the steps to the right among them."""
+        first = np.zeros(free.shape[0] + 1, dtype=np.int64)
+        _count_runs(free, right, first)
+        np.cumsum(first, out=first)
+        begin = np.empty(first[-1], dtype=np.int32)
+        end = np.empty(first[-1], dtype=np.int32)
+        _fill_runs(free, right, first, begin, end)
+        return cls(first, begin, end)
+
+
+def join(
+    parents: npt.NDArray[np.int32],
+    runs: Runs,
+    *,
+    pose: tuple[int, int],
+    to_pose: tuple[int, int],
+    rows_up: int,
+    allowed: Words,
+) -> None:
+    """Join the runs that a move leads between.
+
+    Args:
+        parents: Shape (n_runs,), the union-find forest; changed in place.
+        runs: All runs.
+        pose: (a1, swing) the move starts from.
+        to_pose: (a1, swing) it ends at.
+        rows_up: 1 when it ends one row higher, else 0.
+        allowed: Nodes it may start from, shape (n_rows, n_words).
+    """
+    _join(parents, allowed, rows_up, runs.first[pose], runs.first[to_pose], runs.begin, runs.end)
+
+
+def roots(parents: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+    """The lowest run of each run's component, shape (n_runs,)."""
+    _flatten(parents)
+    return parents
+
+
+def paint(words: Words, runs: Runs, chosen: npt.NDArray[np.bool_]) -> None:
+    """Set the bits of all nodes of the chosen runs, at whatever pose."""
+    n_poses = runs.first.shape[0] * runs.first.shape[1]
+    _paint(words, runs.first.reshape(n_poses, -1), runs.begin, runs.end, chosen)
+
+
+def extents(runs: Runs, labels: npt.NDArray[np.int32], n_labels: int) -> IntArray:
+    """Least row, least column, greatest row, greatest column, states: shape (n_labels, 5)."""
+    n_poses = runs.first.shape[0] * runs.first.shape[1]
+    out = np.empty((n_labels, 5), dtype=np.int64)
+    _extents(runs.first.reshape(n_poses, -1), runs.begin, runs.end, labels, out)
+    return out
+
+
+@numba.njit(nogil=True, cache=True)
+def _count_runs(free, right, first):  # type: ignore[no-untyped-def]
+    """Write how many runs begin in row iy to first[iy + 1]."""
+    for iy in range(free.shape[0]):
+        carry = np.uint64(0)
+        n = 0
+        for word in range(free.shape[1]):
+            stepped = right[iy, word]
+            n += _n_bits(free[iy, word] & ~(stepped << np.uint64(1) | carry))
+            carry = stepped >> np.uint64(63)
+        first[iy + 1] = n
+
+
+@numba.njit(nogil=True, cache=True)
+def _fill_runs(free, right, first, begin, end):  # type: ignore[no-untyped-def]
+    """Write first and last column of every run."""
+    for iy in range(free.shape[0]):
+        carry = np.uint64(0)
+        n_begun = n_ended = first[iy]
+        for word in range(free.shape[1]):
+            stepped = right[iy, word]
+            begins = free[iy, word] & ~(stepped << np.uint64(1) | carry)
+            ends = free[iy, word] & ~stepped
+            carry = stepped >> np.uint64(63)
+            while begins:
+                begin[n_begun] = word * 64 + _lowest_bit(begins)
+                begins &= begins - np.uint64(1)
+                n_begun += 1
+            while ends:
+                end[n_ended] = word * 64 + _lowest_bit(ends)
+                ends &= ends - np.uint64(1)
+                n_ended += 1
+
+
+@numba.njit(nogil=True, cache=True)
+def _join(parents, allowed, rows_up, first_a, first_b, begin, end):  # type: ignore[no-untyped-def]
+    """Join every two runs that an allowed move leads between."""
+    for iy in range(allowed.shape[0] - rows_up):
+        a, b = first_a[iy], first_b[iy + rows_up]
+        ix = _next_bit(allowed[iy], 0)
+        while ix >= 0:
+            while end[a] < ix:
+                a += 1
+            while end[b] < ix:
+                b += 1
+            root_a, root_b = _root(parents, a), _root(parents, b)
+            if root_a < root_b:
+                parents[root_b] = root_a
+            elif root_b < root_a:
+                parents[root_a] = root_b
+            # one allowed move joins the two runs: the next that matters lies beyond either's end
+            ix = _next_bit(allowed[iy], min(end[a], end[b]) + 1)
+
+
+@numba.njit(nogil=True, cache=True)
+def _root(parents, run):  # type: ignore[no-untyped-def]
+    """The root of a run, halving the path on the way."""
+    while parents[run] != run:
+        parents[run] = parents[parents[run]]
+        run = parents[run]
+    return run
+
+
+@numba.njit(nogil=True, cache=True)
+def _flatten(parents):  # type: ignore[no-untyped-def]
+    """Make every run point at its root; roots are the lowest of their component."""
+    for run in range(parents.size):
+        parents[run] = parents[parents[run]]
+
+
+@numba.njit(nogil=True, cache=True)
+def _paint(words, first, begin, end, chosen):  # type: ignore[no-untyped-def]
+    """Set the bits of the chosen runs."""
+    for pose in range(first.shape[0]):
+        for iy in range(first.shape[1] - 1):
+            for run in range(first[pose, iy], first[pose, iy + 1]):
+                if chosen[run]:
+                    set_bits(words[iy], begin[run], end[run])
+
+
+@numba.njit(nogil=True, cache=True)
+def _extents(first, begin, end, labels, out):  # type: ignore[no-untyped-def]
+    """Gather the extent of each label."""
+    out[:, :2] = np.iinfo(np.int64).max
+    out[:, 2:4] = -1
+    out[:, 4] = 0
+    for pose in range(first.shape[0]):
+        for iy in range(first.shape[1] - 1):
+            for run in range(first[pose, iy], first[pose, iy + 1]):
+                box = out[labels[run]]
+                box[0] = min(box[0], iy)
+                box[1] = min(box[1], begin[run])
+                box[2] = max(box[2], iy)
+                box[3] = max(box[3], end[run])
+                box[4] += end[run] - begin[run] + 1
+
+
+@numba.njit(nogil=True, cache=True)
+def _next_bit(row, begin):  # type: ignore[no-untyped-def]
+    """The first set bit of a row of words from `begin` on, or -1."""
+    word = begin >> 6
+    if word >= row.size:
+        return -1
+    bits = row[word] >> np.uint64(begin & 63) << np.uint64(begin & 63)
+    while not bits:
+        word += 1
+        if word == row.size:
+            return -1
+        bits = row[word]
+    return word * 64 + _lowest_bit(bits)
+
+
+@numba.njit(nogil=True, cache=True)
+def _lowest_bit(bits):  # type: ignore[no-untyped-def]
+    """Number of the lowest set bit: how many lie below it."""
+    return _n_bits((bits & (~bits + np.uint64(1))) - np.uint64(1))
+
+
+@numba.njit(nogil=True, cache=True)
+def _n_bits(bits):  # type: ignore[no-untyped-def]
+    """Number of set bits, summed in pairs, nibbles and octets."""
+    bits -= bits >> np.uint64(1) & np.uint64(0x5555555555555555)
+    bits = (bits & np.uint64(0x3333333333333333)) + (
+        bits >> np.uint64(2) & np.uint64(0x3333333333333333)
+    )
+    bits = bits + (bits >> np.uint64(4)) & np.uint64(0x0F0F0F0F0F0F0F0F)
+    return np.int64(bits * np.uint64(0x0101010101010101) >> np.uint64(56))
