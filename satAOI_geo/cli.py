@@ -55,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         say_error(f"{error.filename or 'input or output'}: {error.strerror}")
         return USAGE
     except (click.Abort, KeyboardInterrupt):
-        say_error("interrupted; nothing was written")
+        say_error("interrupted")
         return INTERRUPTED
 
 
@@ -102,6 +102,11 @@ class Outputs:
     def asked(self) -> list[Path]:
         """Those that are asked for."""
         return [path for path in (self.drawing, self.report, self.raster) if path is not None]
+
+    @property
+    def files(self) -> list[Path]:
+        """Those that go to a file."""
+        return [path for path in self.asked if path != STANDARD_OUTPUT]
 
 
 @click.group(
@@ -241,14 +246,17 @@ def run(  # noqa: PLR0913  one parameter an option
 
     Without --output, --report and --raster the figures are printed and nothing is written.
     """
-    from satAOI_adapters import ReadOptions, read_plan
+    from satAOI_adapters import read_plan
+    from satAOI_adapters.dxf_read import ReadOptions
     from satAOI_adapters.robot_read import robot_from
     from satAOI_adapters.terminal import progress
 
+    outputs = Outputs(drawing=output, report=report, raster=raster)
+    refuse_early(outputs, read=[plan, Path(robot), *([layers] if layers else [])])
+    chosen_robot = robot_from(robot)
+    announce_compilation(quiet=quiet)
     from satAOI_geo.pipeline import area_of_interest
 
-    outputs = Outputs(drawing=output, report=report, raster=raster)
-    chosen_robot = robot_from(robot)
     floor_plan = read_plan(plan, ReadOptions(units=units, layers=layers))
     start_mm = None
     if start is not None:
@@ -272,24 +280,53 @@ def run(  # noqa: PLR0913  one parameter an option
     return FINDINGS if strict and result.report.findings else DONE
 
 
+def refuse_early(outputs: Outputs, *, read: list[Path]) -> None:
+    """Refuse outputs that could not be written before any work is done for them.
+
+    Raises:
+        InputError: If one has a suffix that no writer knows, is an input, is asked for twice, or
+            cannot be a file at all.
+    """
+    from satAOI_adapters import writer_of
+    from satAOI_adapters.files import refuse_unfit_target
+
+    for path in (outputs.drawing, outputs.raster):
+        if path is not None:
+            writer_of(path)
+    written: list[Path] = []
+    for path in outputs.files:
+        refuse_unfit_target(path, read)
+        if path.absolute() in written:
+            raise InputError(f"'{path}' is asked for twice; give each output a name of its own")
+        written.append(path.absolute())
+
+
+def announce_compilation(*, quiet: bool) -> None:
+    """Say why the first run takes longer."""
+    from satAOI_adapters import kernel_cache
+    from satAOI_adapters.terminal import say_note
+
+    if not kernel_cache.prepare() and not quiet:
+        say_note("first run of this version: compiling takes some seconds, once")
+
+
 def write(result: "Result", outputs: Outputs) -> None:
     """Write what was asked for, each file whole or not at all."""
-    from satAOI_adapters import write_aoi
-    from satAOI_adapters.report_write import json_of
+    from satAOI_adapters import report_write, write_aoi
 
-    if outputs.drawing is not None:
-        write_aoi(outputs.drawing, result)
-    if outputs.raster is not None:
-        write_aoi(outputs.raster, result)
+    for path in (outputs.drawing, outputs.raster):
+        if path is not None:
+            write_aoi(path, result)
     if outputs.report == STANDARD_OUTPUT:
-        sys.stdout.write(json_of(result.report))
+        sys.stdout.write(report_write.json_of(result.report))
+    elif outputs.report is not None:
+        report_write.write(outputs.report, result.report)
 
 
 def tell(result: "Result", outputs: Outputs, *, quiet: bool) -> None:
-    """The figures and findings.
+    """Say the findings and the figures.
 
-    They are talk beside a file or a JSON report, and the data itself when nothing else is asked
-    for.
+    The figures are talk beside an output, and the output itself where none is asked for.
     """
     from satAOI_adapters.report_write import lines_of
     from satAOI_adapters.terminal import say_findings, say_note, write_table
@@ -298,10 +335,35 @@ def tell(result: "Result", outputs: Outputs, *, quiet: bool) -> None:
         say_findings(result.report.findings)
     if not outputs.asked:
         write_table(lines_of(result.report), sys.stdout)
-    elif not quiet:
+    if quiet:
+        return
+    if outputs.asked:
         write_table(lines_of(result.report), sys.stderr)
-    if not outputs.asked and not quiet:
-        say_note("nothing was written; --output FILE.dxf draws the area")
+    for path in outputs.files:
+        say_note(f"wrote {path}")
+    if not outputs.asked:
+        say_note("no file was written; --output FILE.dxf draws the area into the plan")
+
+
+@commands.command()
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE.dxf",
+    type=click.Path(path_type=Path),
+    help="Draw the area of interest into a copy of the plan, e.g. --output demo.dxf",
+)
+@click.pass_context
+def demo(context: click.Context, output: Path | None) -> int:
+    """Find the area of interest on a plan that comes with the program.
+
+    satAOI-geo demo -o demo.dxf
+    """
+    from importlib.resources import as_file, files
+
+    with as_file(files("satAOI_adapters") / "demo" / "hall.dxf") as plan:
+        code: int = context.invoke(run, plan=plan, output=output)
+    return code
 
 
 @commands.command()

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     Reader: TypeAlias = Callable[[Path, ReadOptions], FloorPlan]
     Writer: TypeAlias = Callable[[Path, Result], None]
 
-__all__ = ["READERS", "WRITERS", "read_plan", "write_aoi"]
+__all__ = ["READERS", "WRITERS", "read_plan", "write_aoi", "writer_of"]
 
 
 def read_plan(path: Path, options: ReadOptions) -> FloorPlan:
@@ -39,7 +39,16 @@ def write_aoi(path: Path, result: Result) -> None:
     Raises:
         InputError: If no writer knows the file's suffix, or the file cannot be written.
     """
-    _by_suffix(WRITERS, path, "write")(path, result)
+    writer_of(path)(path, result)
+
+
+def writer_of(path: Path) -> Writer:
+    """The function that writes files of this name.
+
+    Raises:
+        InputError: If no writer knows the file's suffix.
+    """
+    return _by_suffix(WRITERS, path, "write")
 
 
 def _read_dxf(path: Path, options: ReadOptions) -> FloorPlan:

@@ -1,6 +1,19 @@
 """The report as JSON for programs and as lines for people."""
 
+from pathlib import Path
+
+from satAOI_adapters.files import written_whole
 from satAOI_geo.report import Report
+
+
+def write(path: Path, report: Report) -> None:
+    """Write the report to a file, whole or not at all.
+
+    Raises:
+        InputError: If the file cannot be written or is the plan itself.
+    """
+    with written_whole(path, never_over=[Path(report.input.path)]) as stream:
+        stream.write(json_of(report).encode())
 
 
 def json_of(report: Report) -> str:
