@@ -1,0 +1,360 @@
+"""The command line: what goes where, and with which exit code."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import ezdxf
+import pytest
+import rich_click as click
+
+import satAOI_geo
+from satAOI_geo import pipeline
+from satAOI_geo.cli import commands, main
+
+ROOT = Path(__file__).parents[1]
+ROOM_M2 = 16.0
+COLUMN_M2 = 0.09
+CORNER_M2 = (1 - math.pi / 4) * 0.35**2
+"""What the disc leaves in a right-angled corner."""
+
+OPTIONS = [
+    pytest.param(command, option, id=f"{name} {option.opts[0]}")
+    for name, command in commands.commands.items()
+    for option in command.params
+    if isinstance(option, click.Option)
+]
+
+
+def drawn_room(file: Path, *, insunits: int = 4, unit_mm: float = 1.0) -> Path:
+    """A room of 4 × 4 m with its lower left corner at (-1, -1) m, a column at its top right.
+
+    (-1, 3) ┌───────┬┐
+            │       └┤  300 × 300 mm
+            │        │
+    (-1,-1) └────────┘ (3, -1)
+    """
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = insunits
+    for layer, left, bottom, side in (("FLOOR", -1000, -1000, 4000), ("COLUMN", 2700, 2700, 300)):
+        corners = [(0, 0), (side, 0), (side, side), (0, side)]
+        points = [((left + x) / unit_mm, (bottom + y) / unit_mm) for x, y in corners]
+        document.modelspace().add_lwpolyline(points, close=True, dxfattribs={"layer": layer})
+    document.saveas(file)
+    return file
+
+
+@pytest.fixture
+def room(tmp_path: Path) -> Path:
+    return drawn_room(tmp_path / "room.dxf")
+
+
+def figures(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict:
+    """The report of a run that is expected to go well."""
+    assert main([*map(str, arguments), "--report", "-"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def the_error(capsys: pytest.CaptureFixture[str]) -> str:
+    """The one line that a failed run says."""
+    said = capsys.readouterr()
+    assert said.out == ""
+    (line,) = said.err.splitlines()
+    assert line.startswith("error: ")
+    return line
+
+
+def test_the_figures_are_the_output_where_no_other_is_asked_for(
+    room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([str(room)]) == 0
+    said = capsys.readouterr()
+    assert "16.00 m² (layer)" in said.out
+    assert "no file was written" in said.err
+    assert list(room.parent.iterdir()) == [room]
+
+
+def test_run_may_be_left_out(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([str(room)]) == 0
+    short = capsys.readouterr()
+    assert main(["run", str(room)]) == 0
+    assert capsys.readouterr() == short
+
+
+def test_options_may_stand_before_the_plan(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert figures(capsys, "--step", 20, room)["lattice"]["step_mm"] == 20
+
+
+def test_the_area_of_a_room_is_all_but_its_corners(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    report = figures(capsys, drawn_room(tmp_path / "room.dxf"))
+    assert report["floor"]["area_m2"] == ROOM_M2
+    assert report["floor"]["obstacle_area_m2"] == pytest.approx(COLUMN_M2, rel=1e-12)
+    # three corners of the room and two beside the column; the lattice leaves less than one step
+    # along the 16 m of walls
+    ideal_m2 = ROOM_M2 - COLUMN_M2 - 5 * CORNER_M2
+    assert 0 < ideal_m2 - report["aoi"]["area_m2"] < 16 * 0.010
+
+
+def test_talk_goes_to_standard_error_and_quiet_ends_it(
+    room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = room.with_name("aoi.dxf")
+    assert main([str(room), "-o", str(output)]) == 0
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert f"wrote {output}" in said.err
+    assert "\x1b" not in said.err  # neither colour nor progress, for this is no terminal
+    assert main([str(room), "-o", str(output), "--quiet"]) == 0
+    assert capsys.readouterr() == ("", "")
+
+
+def test_every_output_is_written(room: Path) -> None:
+    names = {"aoi.dxf", "aoi.json", "aoi.npz"}
+    drawing, report, raster = (str(room.with_name(name)) for name in sorted(names))
+    assert main([str(room), "-o", drawing, "--report", report, "--raster", raster]) == 0
+    assert {file.name for file in room.parent.iterdir()} == {room.name, *names}
+
+
+def test_two_runs_write_the_same_report_but_for_the_time(
+    room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, second = figures(capsys, room), figures(capsys, room)
+    assert first.pop("timing_s").keys() == second.pop("timing_s").keys()
+    assert first == second
+
+
+def test_both_engines_give_the_same_figures(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    coarse = (room, "--step", 100, "--directions", 8)
+    fast = figures(capsys, *coarse)
+    reference = figures(capsys, *coarse, "--engine", "reference")
+    del fast["timing_s"], reference["timing_s"]
+    assert fast == reference
+
+
+def test_the_start_is_in_drawing_units(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    in_metres = drawn_room(tmp_path / "room.dxf", insunits=6, unit_mm=1000)
+    start = figures(capsys, in_metres, "--start", "-0.4,1.2")["start"]
+    assert start["source"] == "option"
+    assert start["xy_mm"] == pytest.approx([-395, 1205], abs=10)
+
+
+def test_the_unit_that_is_given_goes_before_the_headers(
+    room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    report = figures(capsys, room, "--units", "cm", "--step", 100)
+    assert report["input"]["unit"] == "cm"
+    assert report["floor"]["area_m2"] == pytest.approx(ROOM_M2 * 100, rel=1e-12)
+
+
+def test_clearance_narrows_the_floor(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    free = [
+        figures(capsys, room, "--clearance", clearance)["free"]["n_nodes"]
+        for clearance in (0, 50, 500)
+    ]
+    assert free == sorted(free, reverse=True)
+    assert len(set(free)) == len(free)
+
+
+def test_a_robot_of_ones_own_is_used(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["robots", "magicbim"]) == 0
+    file = room.with_name("mine.toml")
+    file.write_text(capsys.readouterr().out.replace("350.0", "300.0"), encoding="utf-8")
+    assert figures(capsys, room, "--robot", file)["robot"]["disc_radius_mm"] == 300
+
+
+def test_strict_tells_findings_by_its_exit_code(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan = drawn_room(tmp_path / "room.dxf")
+    document = ezdxf.readfile(plan)
+    corners = [(0, 0), (300, 0), (300, 300), (0, 300)]
+    document.modelspace().add_lwpolyline(corners, close=True, dxfattribs={"layer": "MYSTERY"})
+    document.save()
+    assert main([str(plan)]) == 0
+    assert "MYSTERY" in capsys.readouterr().err
+    assert main([str(plan), "--strict"]) == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "complaint"),
+    [
+        (["--start", "1"], 2, "'1' is not two numbers with a comma"),
+        (["--start", "1;2"], 2, "'1;2' is not two numbers with a comma"),
+        (["--step", "0"], 2, "0"),
+        (["--step", "ten"], 2, "'ten' is not a valid float"),
+        (["--directions", "7"], 2, "multiple of 4"),
+        (["--clearance", "-1"], 2, "clearance"),
+        (["--units", "parsec"], 2, "'parsec' is not one of"),
+        (["--robot", "r2d2"], 2, "no robot 'r2d2'"),
+        (["--layers", "none.toml"], 2, "none.toml"),
+        (["--nonsense"], 2, "--nonsense"),
+        (["-o", "aoi.odt"], 2, "must end in"),
+        (["-o", "nowhere/aoi.dxf"], 2, "no folder 'nowhere'"),
+        (["-o", "room.dxf"], 2, "is an input"),
+        (["--report", "room.dxf"], 2, "is an input"),
+        (["-o", "aoi.dxf", "--report", "aoi.dxf"], 2, "asked for twice"),
+        (["--start", "2800,2800"], 4, "handle"),
+        (["--start", "90000,90000"], 4, "outside"),
+        (["--clearance", "5000"], 4, "nowhere"),
+        (["--step", "0.001"], 5, "nodes"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_bad_input_is_one_line_and_an_exit_code(
+    arguments: list[str],
+    code: int,
+    complaint: str,
+    room: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(room.parent)
+    before = room.read_bytes()
+    assert main([room.name, "--quiet", *arguments]) == code
+    assert complaint in the_error(capsys)
+    assert list(room.parent.iterdir()) == [room]
+    assert room.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "code", "complaint"),
+    [
+        ("missing.dxf", None, 3, "missing.dxf"),
+        ("empty.dxf", b"", 3, "empty.dxf"),
+        ("picture.dxf", b"\x89PNG\r\n\x1a\n" + bytes(64), 3, "picture.dxf"),
+        ("plan.dwg", b"AC1032", 2, "save the drawing as DXF"),
+        ("plan", b"", 2, "must end in"),
+    ],
+)
+def test_a_file_that_is_no_drawing_is_one_line_and_an_exit_code(
+    name: str,
+    content: bytes | None,
+    code: int,
+    complaint: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    plan = tmp_path / name
+    if content is not None:
+        plan.write_bytes(content)
+    assert main([str(plan), "--quiet"]) == code
+    assert complaint in the_error(capsys)
+
+
+def test_a_drawing_without_a_unit_says_which_option_supplies_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan = drawn_room(tmp_path / "room.dxf", insunits=0)
+    assert main([str(plan), "--quiet"]) == 3
+    assert "--units" in the_error(capsys)
+
+
+def test_no_argument_at_all_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    said = capsys.readouterr()
+    assert "Usage: satAOI-geo" in said.out + said.err
+
+
+def test_an_interrupt_has_an_exit_code_of_its_own(
+    room: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(pipeline, "area_of_interest", interrupted)
+    output = room.with_name("aoi.dxf")
+    assert main([str(room), "--quiet", "-o", str(output)]) == 130
+    assert "error: interrupted" in capsys.readouterr().err
+    assert not output.exists()
+
+
+def test_a_mistake_of_the_program_is_not_made_to_look_like_bad_input(
+    room: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def mistaken(*_: object, **__: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(pipeline, "area_of_interest", mistaken)
+    with pytest.raises(ZeroDivisionError):
+        main([str(room), "--quiet"])
+
+
+def test_names_that_are_no_text_are_printed_all_the_same(tmp_path: Path) -> None:
+    plan = drawn_room(tmp_path / "room.dxf").rename(os.fsdecode(bytes(tmp_path) + b"/\xff.dxf"))
+    done = program(str(plan), "--step", "100", "-o", str(tmp_path / "aoi.dxf"))
+    assert done.returncode == 0, done.stderr
+    assert program(f"{plan}x").returncode == 2
+
+
+def program(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """The program as a shell would start it."""
+    start = "import sys; sys.path[:0] = sys.argv.pop(1).split('|'); "
+    start += "from satAOI_geo.cli import main; sys.exit(main())"
+    return subprocess.run(
+        [sys.executable, "-W", "error", "-c", start, f"{ROOT}|{ROOT / 'adapters'}", *arguments],
+        capture_output=True,
+        encoding="utf-8",
+        errors="replace",
+        env={**os.environ, **environment},
+        check=False,
+        timeout=300,
+    )
+
+
+def test_help_starts_none_of_the_heavy_libraries() -> None:
+    heavy = ("numpy", "scipy", "shapely", "numba", "ezdxf", "ifcopenshell", "pydantic", "PIL")
+    code = (
+        "import sys; from satAOI_geo.cli import main; main(['--help']); "
+        f"print('loaded:', *(name for name in {heavy} if name in sys.modules))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", f"import sys; sys.path[:0] = ['.', 'adapters']; {code}"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.splitlines()[-1] == "loaded:"
+
+
+@pytest.mark.parametrize(("command", "option"), OPTIONS)
+def test_every_option_has_help_and_where_it_takes_a_value_an_example(
+    command: click.Command, option: click.Option
+) -> None:
+    assert option.help, command.name
+    if not option.is_flag:
+        longest = max(option.opts, key=len)
+        assert f"e.g. {longest} " in option.help
+
+
+@pytest.mark.parametrize("name", commands.commands)
+def test_every_command_has_help(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([name, "--help"]) == 0
+    assert f"satAOI-geo {name}" in capsys.readouterr().out
+
+
+def test_the_version_is_the_packages(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"satAOI-geo {satAOI_geo.__version__}\n"
+
+
+def test_the_robots_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["robots"]) == 0
+    heads, *rows = capsys.readouterr().out.splitlines()
+    assert heads.startswith("name")
+    assert [row.split()[0] for row in rows] == list(satAOI_geo.ROBOTS)
+
+
+def test_the_demo_needs_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["demo"]) == 0
+    assert "m² (layer)" in capsys.readouterr().out
+    assert main(["demo", "-o", "demo.dxf"]) == 0
+    assert [file.name for file in tmp_path.iterdir()] == ["demo.dxf"]
