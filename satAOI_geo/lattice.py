@@ -5,7 +5,7 @@ Nodes are the centres of square cells that cover the floor's bounds; node [row, 
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, TypeAlias
 
 import numpy as np
@@ -112,6 +112,17 @@ class Lattice:
         if 0 <= iy < self.n_rows and 0 <= ix < self.n_columns:
             return iy, ix
         return None
+
+    def window(self, rows: slice, columns: slice) -> "Lattice":
+        """The part of the lattice in a window of rows and columns, both with start and stop."""
+        x_mm = self.origin_mm[0] + columns.start * self.step_mm
+        y_mm = self.origin_mm[1] + rows.start * self.step_mm
+        return replace(
+            self,
+            origin_mm=(x_mm, y_mm),
+            n_rows=rows.stop - rows.start,
+            n_columns=columns.stop - columns.start,
+        )
 
     def directions(self) -> FloatArray:
         """Unit vectors u(2πk / n_directions), shape (n_directions, 2).

@@ -21,7 +21,7 @@ from satAOI_geo.freespace import Engine, FreeSpace, moves, run_threads, steps_ri
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.robot import Robot
-from satAOI_geo.runs import Runs, SliceRuns, extents, join, paint, roots
+from satAOI_geo.runs import Runs, SliceRuns, join, paint, roots
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,12 +62,16 @@ class PoseComponents:
         lattice: Nodes and directions.
         runs: The states, as runs.
         labels: Shape (n_runs,): number of each run's set.
+        members: Shape (n_runs,): all runs, those of one set together, sets in order.
+        first: Shape (n + 1,): the runs of a set are members[first[label] : first[label + 1]].
         boxes: Shape (n, 4), least row, least column, greatest row, greatest column of each set.
     """
 
     lattice: Lattice
     runs: Runs
     labels: npt.NDArray[np.int32]
+    members: npt.NDArray[np.int64]
+    first: npt.NDArray[np.int64]
     boxes: npt.NDArray[np.int64]
 
     @classmethod
@@ -109,9 +113,28 @@ class PoseComponents:
         run_threads(
             connect, n_directions, progress and (lambda share: progress((1 + 3 * share) / 4))
         )
-        lowest, labels = np.unique(roots(parents), return_inverse=True)
-        labels = labels.astype(np.int32)
-        return cls(space.lattice, runs, labels, extents(runs, labels, lowest.size)[:, :4])
+        _, labels = np.unique(roots(parents), return_inverse=True)
+        return cls._gathered(space.lattice, runs, labels.astype(np.int32))
+
+    @classmethod
+    def _gathered(
+        cls, lattice: Lattice, runs: Runs, labels: npt.NDArray[np.int32]
+    ) -> "PoseComponents":
+        """The sets from the label of each run, labels 0 .. n - 1 all in use."""
+        members = np.argsort(labels, kind="stable")
+        first = np.concatenate(([0], np.cumsum(np.bincount(labels)))).astype(np.int64)
+        boxes = np.column_stack(
+            [
+                gather.reduceat(values[members], first[:-1])
+                for gather, values in (
+                    (np.minimum, runs.row),
+                    (np.minimum, runs.begin),
+                    (np.maximum, runs.row),
+                    (np.maximum, runs.end),
+                )
+            ]
+        ).astype(np.int64)
+        return cls(lattice, runs, labels, members, first, boxes)
 
     def at(self, iy: int, ix: int, a1: int, swing: int) -> int | None:
         """The set that holds a state, or None when the state is not free."""
@@ -124,8 +147,12 @@ class PoseComponents:
         found = {self.at(iy, ix, a1, swing) for a1, swing in poses}
         return sorted(label for label in found if label is not None)
 
+    def runs_of(self, label: int) -> npt.NDArray[np.int64]:
+        """The numbers of the runs of one set."""
+        return self.members[self.first[label] : self.first[label + 1]]
+
     def nodes(self, label: int) -> BoolArray:
         """The nodes at which the set has some pose, shape (n_rows, n_columns)."""
         words = self.lattice.no_nodes()
-        paint(words, self.runs, self.labels == label)
+        paint(words, self.runs, self.runs_of(label))
         return self.lattice.unpacked(words)

@@ -24,11 +24,13 @@ class Runs:
     Attributes:
         first: Shape (n_directions, n_swings, n_rows + 1): the runs of row iy at a pose are those
             from first[a1, swing, iy] up to, not including, first[a1, swing, iy + 1].
+        row: Shape (n_runs,), row of each run.
         begin: Shape (n_runs,), first column of each run.
         end: Shape (n_runs,), last column of each run.
     """
 
     first: IntArray
+    row: npt.NDArray[np.int32]
     begin: npt.NDArray[np.int32]
     end: npt.NDArray[np.int32]
 
@@ -37,9 +39,12 @@ class Runs:
         """The runs of all poses, given as slices[a1][swing]."""
         flat = [one for row in slices for one in row]
         offsets = np.cumsum([0, *(one.begin.size for one in flat)])
-        first = np.array([one.first for one in flat]) + offsets[:-1, np.newaxis]
+        firsts = np.array([one.first for one in flat])
+        rows = np.tile(np.arange(firsts.shape[1] - 1, dtype=np.int32), len(flat))
+        first = firsts + offsets[:-1, np.newaxis]
         return cls(
             first.reshape(len(slices), len(slices[0]), -1),
+            np.repeat(rows, np.diff(firsts, axis=1).ravel()),
             np.concatenate([one.begin for one in flat]),
             np.concatenate([one.end for one in flat]),
         )
@@ -99,18 +104,9 @@ def roots(parents: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
     return parents
 
 
-def paint(words: Words, runs: Runs, chosen: npt.NDArray[np.bool_]) -> None:
-    """Set the bits of all nodes of the chosen runs, at whatever pose."""
-    n_poses = runs.first.shape[0] * runs.first.shape[1]
-    _paint(words, runs.first.reshape(n_poses, -1), runs.begin, runs.end, chosen)
-
-
-def extents(runs: Runs, labels: npt.NDArray[np.int32], n_labels: int) -> IntArray:
-    """Least row, least column, greatest row, greatest column, states: shape (n_labels, 5)."""
-    n_poses = runs.first.shape[0] * runs.first.shape[1]
-    out = np.empty((n_labels, 5), dtype=np.int64)
-    _extents(runs.first.reshape(n_poses, -1), runs.begin, runs.end, labels, out)
-    return out
+def paint(words: Words, runs: Runs, chosen: IntArray) -> None:
+    """Set the bits of all nodes of the chosen runs, given by number, at whatever pose."""
+    _paint(words, runs.row[chosen], runs.begin[chosen], runs.end[chosen])
 
 
 @numba.njit(nogil=True, cache=True)
@@ -184,30 +180,10 @@ def _flatten(parents):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True)
-def _paint(words, first, begin, end, chosen):  # type: ignore[no-untyped-def]
-    """Set the bits of the chosen runs."""
-    for pose in range(first.shape[0]):
-        for iy in range(first.shape[1] - 1):
-            for run in range(first[pose, iy], first[pose, iy + 1]):
-                if chosen[run]:
-                    set_bits(words[iy], begin[run], end[run])
-
-
-@numba.njit(nogil=True, cache=True)
-def _extents(first, begin, end, labels, out):  # type: ignore[no-untyped-def]
-    """Gather the extent of each label."""
-    out[:, :2] = np.iinfo(np.int64).max
-    out[:, 2:4] = -1
-    out[:, 4] = 0
-    for pose in range(first.shape[0]):
-        for iy in range(first.shape[1] - 1):
-            for run in range(first[pose, iy], first[pose, iy + 1]):
-                box = out[labels[run]]
-                box[0] = min(box[0], iy)
-                box[1] = min(box[1], begin[run])
-                box[2] = max(box[2], iy)
-                box[3] = max(box[3], end[run])
-                box[4] += end[run] - begin[run] + 1
+def _paint(words, row, begin, end):  # type: ignore[no-untyped-def]
+    """Set the bits of runs."""
+    for run in range(row.size):
+        set_bits(words[row[run]], begin[run], end[run])
 
 
 @numba.njit(nogil=True, cache=True)

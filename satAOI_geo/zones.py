@@ -1,0 +1,171 @@
+"""Zones: what each set-down of the robot can trowel, and how few set-downs are enough."""
+
+import heapq
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Final, Protocol
+
+import numpy as np
+import numpy.typing as npt
+import scipy.ndimage
+
+from satAOI_geo.aoi import Aoi, area
+from satAOI_geo.discs import covered_cells
+from satAOI_geo.lattice import Lattice
+from satAOI_geo.plan import BoolArray
+from satAOI_geo.reach import PoseComponents
+
+ZONE_MM2: Final = 500_000.0
+"""Smaller zones are not worth a set-down: half a square metre is little more than one disc."""
+
+
+class Components(Protocol):
+    """Connected sets of nodes, numbered 0 .. n - 1."""
+
+    @property
+    def boxes(self) -> npt.NDArray[np.int64]:
+        """Shape (n, 4), least row, least column, greatest row, greatest column of each set."""
+
+    def nodes(self, label: int) -> BoolArray:
+        """The nodes of one set, shape (n_rows, n_columns)."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """A node with a pose: row, column, direction number, swing number."""
+
+    iy: int
+    ix: int
+    a1: int
+    swing: int
+
+
+@dataclass(frozen=True, slots=True)
+class Zone:
+    """A component and what it trowels.
+
+    Attributes:
+        label: Number of the component.
+        n_nodes: Nodes at which it has some pose.
+        aoi: What the disc covers; the raster is that of the zone's window.
+        set_down: A state to set the robot down at, well inside.
+    """
+
+    label: int
+    n_nodes: int
+    aoi: Aoi
+    set_down: State
+
+
+@dataclass(frozen=True, slots=True)
+class SetDown:
+    """One of the set-downs that together cover all that any pose can trowel.
+
+    Attributes:
+        state: Where the robot is set down.
+        label: Number of its component.
+        gain_mm2: What it trowels beyond the set-downs before it, by the raster.
+    """
+
+    state: State
+    label: int
+    gain_mm2: float
+
+
+def largest(components: Components, labels: Iterable[int], lattice: Lattice, disc_mm: float) -> int:
+    """The component of the largest area among some; of equals the one of the lowest number."""
+    bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
+    best_label, best_mm2 = -1, -1.0
+    for label in sorted(labels, key=lambda label: (-bounds_mm2[label], label)):
+        if bounds_mm2[label] < best_mm2:
+            break
+        area_mm2 = _area_mm2(components, label, lattice, disc_mm)
+        if (area_mm2, -label) > (best_mm2, -best_label):
+            best_label, best_mm2 = label, area_mm2
+    return best_label
+
+
+def zones(components: PoseComponents, lattice: Lattice, disc_mm: float) -> list[Zone]:
+    """All components of at least `ZONE_MM2`, the largest area first."""
+    found = []
+    bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
+    for label in np.flatnonzero(bounds_mm2 >= ZONE_MM2).tolist():
+        rows, columns = _window(components.boxes[label], lattice, disc_mm)
+        nodes = components.nodes(label)
+        aoi = area(nodes[rows, columns], lattice.window(rows, columns), disc_mm)
+        if aoi.area_mm2 >= ZONE_MM2:
+            state = set_down(components, label)
+            found.append(Zone(label, int(nodes.sum()), aoi, state))
+    return sorted(found, key=lambda zone: (-zone.aoi.area_mm2, zone.label))
+
+
+def set_downs(components: PoseComponents, lattice: Lattice, disc_mm: float) -> Iterator[SetDown]:
+    """Set-downs whose areas together cover what any pose can trowel, the greatest gain first.
+
+    Greedy: each covers the most cells not covered yet. Gains only shrink as more is covered, so a
+    stale gain is an upper bound and need only be looked at again when it comes first.
+    """
+    done = np.zeros(lattice.shape, dtype=np.bool_)
+    bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
+    queue = [(-bound, label, False) for label, bound in enumerate(bounds_mm2)]
+    heapq.heapify(queue)
+    while queue:
+        best, label, fresh = heapq.heappop(queue)
+        rows, columns = _window(components.boxes[label], lattice, disc_mm)
+        if done[rows, columns].all():
+            continue
+        nodes = components.nodes(label)
+        cells = covered_cells(nodes[rows, columns], disc_mm / lattice.step_mm)
+        gain_mm2 = float((cells & ~done[rows, columns]).sum()) * lattice.step_mm**2
+        if gain_mm2 == 0.0:
+            continue
+        if fresh and gain_mm2 == -best:
+            done[rows, columns] |= cells
+            yield SetDown(set_down(components, label), label, gain_mm2)
+        else:
+            heapq.heappush(queue, (-gain_mm2, label, True))
+
+
+def set_down(components: PoseComponents, label: int) -> State:
+    """The state deepest inside a component's nodes, arm as straight as possible."""
+    rows, columns = (slice(int(a), int(b) + 1) for a, b in components.boxes[label].reshape(2, 2).T)
+    depth = scipy.ndimage.distance_transform_cdt(
+        np.pad(components.nodes(label)[rows, columns], 1), "chessboard"
+    )
+    at = np.unravel_index(int(depth.argmax()), depth.shape)
+    iy, ix = int(at[0]) - 1 + rows.start, int(at[1]) - 1 + columns.start
+    turns = components.lattice.swings
+    straight_first = sorted(range(len(turns)), key=lambda swing: (abs(turns[swing]), swing))
+    return next(
+        State(iy, ix, a1, swing)
+        for swing in straight_first
+        for a1 in range(components.lattice.n_directions)
+        if components.at(iy, ix, a1, swing) == label
+    )
+
+
+def _area_mm2(components: Components, label: int, lattice: Lattice, disc_mm: float) -> float:
+    """What the disc covers from one component's nodes."""
+    rows, columns = _window(components.boxes[label], lattice, disc_mm)
+    nodes = components.nodes(label)[rows, columns]
+    return area(nodes, lattice.window(rows, columns), disc_mm, exact=True).area_mm2
+
+
+def _area_bounds_mm2(
+    boxes: npt.NDArray[np.int64], disc_mm: float, step_mm: float
+) -> npt.NDArray[np.float64]:
+    """No component covers more than its box grown by the disc: a rounded rectangle."""
+    sides_mm = (boxes[:, 2:] - boxes[:, :2]) * step_mm + 2 * disc_mm
+    bounds: npt.NDArray[np.float64] = sides_mm.prod(axis=1) - (4 - math.pi) * disc_mm**2
+    return bounds
+
+
+def _window(box: npt.NDArray[np.int64], lattice: Lattice, disc_mm: float) -> tuple[slice, slice]:
+    """Rows and columns that hold a box of nodes and all that the disc covers from them."""
+    pad = math.ceil(disc_mm / lattice.step_mm)
+    top, right = box[2] + pad + 1, box[3] + pad + 1
+    return (
+        slice(max(0, int(box[0]) - pad), min(lattice.n_rows, int(top))),
+        slice(max(0, int(box[1]) - pad), min(lattice.n_columns, int(right))),
+    )
