@@ -17,13 +17,20 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
-import numpy.typing as npt
 import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.polygon import orient
 
 from satAOI_geo.lattice import Lattice, Words
-from satAOI_geo.plan import CONTACT_MM, Circle, FloatArray, FloorPlan, Shape, polygons_in
+from satAOI_geo.plan import (
+    CONTACT_MM,
+    Circle,
+    FloatArray,
+    FloorPlan,
+    IntArray,
+    Shape,
+    polygons_in,
+)
 from satAOI_geo.robot import Part, Robot
 
 
@@ -41,7 +48,7 @@ class Pieces:
 
     x: FloatArray
     y: FloatArray
-    first: npt.NDArray[np.int64]
+    first: IntArray
     radius: FloatArray
 
     @classmethod
@@ -133,7 +140,17 @@ def _from_lowest(corners: FloatArray) -> FloatArray:
 
 
 @numba.njit(nogil=True, cache=True)
-def _block(words, n_columns, part_x, part_y, reach, x, y, first, radius):  # type: ignore[no-untyped-def]
+def _block(
+    words: Words,
+    n_columns: int,
+    part_x: FloatArray,
+    part_y: FloatArray,
+    reach: float,
+    x: FloatArray,
+    y: FloatArray,
+    first: IntArray,
+    radius: FloatArray,
+) -> None:
     """Set the bits of the lattice points in (piece ⊕ part) ⊕ disc(reach + radius), piece by piece.
 
     The part is already turned by 180°. Lowest corner + lowest corner is the lowest corner of the
@@ -168,7 +185,14 @@ def _block(words, n_columns, part_x, part_y, reach, x, y, first, radius):  # typ
 
 
 @numba.njit(nogil=True, cache=True)
-def _minkowski_sum(ax, ay, bx, by, sum_x, sum_y):  # type: ignore[no-untyped-def]
+def _minkowski_sum(
+    ax: FloatArray,
+    ay: FloatArray,
+    bx: FloatArray,
+    by: FloatArray,
+    sum_x: FloatArray,
+    sum_y: FloatArray,
+) -> tuple[int, int]:
     """Corners of the sum of two convex polygons, the first corner again at the end.
 
     Both start at their lowest, then leftmost corner and run counter-clockwise. Returns the number
@@ -208,7 +232,9 @@ def _minkowski_sum(ax, ay, bx, by, sum_x, sum_y):  # type: ignore[no-untyped-def
 
 
 @numba.njit(nogil=True, cache=True)
-def _right_flank(x, y, n_rising, r, low, high, right):  # type: ignore[no-untyped-def]
+def _right_flank(
+    x: FloatArray, y: FloatArray, n_rising: int, r: float, low: int, high: int, right: FloatArray
+) -> None:
     """Greatest x of the rounded polygon in each row from low to high, going up its right side."""
     iy = low
     vx, vy = x[0], y[0]
@@ -224,7 +250,16 @@ def _right_flank(x, y, n_rising, r, low, high, right):  # type: ignore[no-untype
 
 
 @numba.njit(nogil=True, cache=True)
-def _left_flank(x, y, n_rising, n_corners, r, low, high, left):  # type: ignore[no-untyped-def]
+def _left_flank(
+    x: FloatArray,
+    y: FloatArray,
+    n_rising: int,
+    n_corners: int,
+    r: float,
+    low: int,
+    high: int,
+    left: FloatArray,
+) -> None:
     """Least x of the rounded polygon in each row from low to high, going up its left side."""
     iy = low
     vx, vy = x[0], y[0]
@@ -243,7 +278,9 @@ def _left_flank(x, y, n_rising, n_corners, r, low, high, left):  # type: ignore[
 
 
 @numba.njit(nogil=True, cache=True)
-def _arc(vx, vy, r, side, iy, last, flank):  # type: ignore[no-untyped-def]
+def _arc(
+    vx: float, vy: float, r: float, side: float, iy: int, last: float, flank: FloatArray
+) -> int:
     """Fill rows from iy up to `last` with the circle of radius r about (vx, vy); next row."""
     while iy <= last:
         rise = iy - vy
@@ -253,7 +290,7 @@ def _arc(vx, vy, r, side, iy, last, flank):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True)
-def _line(x0, y0, slope, iy, last, flank):  # type: ignore[no-untyped-def]
+def _line(x0: float, y0: float, slope: float, iy: int, last: float, flank: FloatArray) -> int:
     """Fill rows from iy up to `last` with the line through (x0, y0); next row."""
     while iy <= last:
         flank[iy] = x0 + (iy - y0) * slope
@@ -262,7 +299,7 @@ def _line(x0, y0, slope, iy, last, flank):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True)
-def set_bits(row, begin, end):  # type: ignore[no-untyped-def]
+def set_bits(row: Words, begin: int, end: int) -> None:
     """Set bits begin .. end of a row of words."""
     every = np.uint64(0xFFFFFFFFFFFFFFFF)
     first_word, last_word = begin >> 6, end >> 6

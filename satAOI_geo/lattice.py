@@ -21,7 +21,7 @@ MAX_NODES: Final = 100_000_000
 WORD_BITS: Final = 64
 
 Words: TypeAlias = npt.NDArray[np.uint64]
-"""Nodes as bits, shape (..., n_rows, n_words): node [iy, ix] is bit ix % 64 of word [iy, ix // 64]."""
+"""Nodes as bits, shape (..., n_rows, n_words): [iy, ix] is bit ix % 64 of word [iy, ix // 64]."""
 
 CELL_SLACK: Final = 1e-9
 """Share of a cell that rounding may add to an extent that is a whole number of cells."""

@@ -18,6 +18,7 @@ from shapely.geometry.base import BaseGeometry
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
+IntArray: TypeAlias = npt.NDArray[np.int64]
 Region: TypeAlias = Polygon | MultiPolygon
 
 CONTACT_MM: Final = 1e-4
@@ -30,7 +31,7 @@ re-exported copy of a drawing, decides such a tie the same way.
 """
 
 CIRCLE_SEGMENTS: Final = 720
-"""Corners of the polygon that stands for a circle in areas and pictures, never in a contact test."""
+"""Corners of the polygon that stands for a circle in areas and pictures, not in contact tests."""
 
 
 class Kind(StrEnum):
@@ -201,16 +202,12 @@ class FloorPlan:
     def outside(self, margin_mm: float) -> Region:
         """What is not floor, out to a margin around the floor's bounds, as a closed set."""
         left, bottom, right, top = self.floor.bounds
-        around = box(
-            left - margin_mm, bottom - margin_mm, right + margin_mm, top + margin_mm
-        )
+        around = box(left - margin_mm, bottom - margin_mm, right + margin_mm, top + margin_mm)
         return as_region(around.difference(self.floor))
 
     def obstacle_region(self) -> Region:
         """The part of the floor that polygons and circles occupy, overlaps counted once."""
-        solids = [
-            o.region() for o in self.obstacles if not isinstance(o.shape, LineString)
-        ]
+        solids = [o.region() for o in self.obstacles if not isinstance(o.shape, LineString)]
         return as_region(shapely.union_all(solids).intersection(self.floor))
 
     def free_region(self) -> Region:

@@ -51,7 +51,8 @@ class DiscComponents:
 
     def nodes(self, label: int) -> BoolArray:
         """The nodes of one set, shape (n_rows, n_columns)."""
-        return self.labels == label
+        nodes: BoolArray = self.labels == label
+        return nodes
 
 
 @dataclass(frozen=True, slots=True)

@@ -116,7 +116,7 @@ class Report(Section):
 
     model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
 
-    schema_name: Literal["sataoi-report/1"] = Field("sataoi-report/1", alias="schema")
+    schema_name: Literal["sataoi-report/1"] = Field(alias="schema")
     input: InputFigures
     robot: RobotFigures
     lattice: LatticeFigures
@@ -154,6 +154,7 @@ def report_of(
     }
     floor = _floor_figures(plan)
     return Report(
+        schema="sataoi-report/1",
         input=InputFigures(
             path=plan.source.path,
             sha256=plan.source.sha256,

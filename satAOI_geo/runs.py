@@ -13,8 +13,9 @@ import numpy.typing as npt
 
 from satAOI_geo.intervals import set_bits
 from satAOI_geo.lattice import Words
+from satAOI_geo.plan import IntArray
 
-IntArray: TypeAlias = npt.NDArray[np.int64]
+Int32Array: TypeAlias = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +31,9 @@ class Runs:
     """
 
     first: IntArray
-    row: npt.NDArray[np.int32]
-    begin: npt.NDArray[np.int32]
-    end: npt.NDArray[np.int32]
+    row: Int32Array
+    begin: Int32Array
+    end: Int32Array
 
     @classmethod
     def joined(cls, slices: list[list["SliceRuns"]]) -> "Runs":
@@ -61,8 +62,8 @@ class SliceRuns:
     """The runs of one pose: `first` has shape (n_rows + 1,)."""
 
     first: IntArray
-    begin: npt.NDArray[np.int32]
-    end: npt.NDArray[np.int32]
+    begin: Int32Array
+    end: Int32Array
 
     @classmethod
     def of(cls, free: Words, right: Words) -> "SliceRuns":
@@ -77,7 +78,7 @@ class SliceRuns:
 
 
 def join(
-    parents: npt.NDArray[np.int32],
+    parents: Int32Array,
     runs: Runs,
     *,
     pose: tuple[int, int],
@@ -95,10 +96,10 @@ def join(
         rows_up: 1 when it ends one row higher, else 0.
         allowed: Nodes it may start from, shape (n_rows, n_words).
     """
-    _join(parents, allowed, rows_up, runs.first[pose], runs.first[to_pose], runs.begin, runs.end)
+    _join(parents, allowed, rows_up, runs.first[pose], runs.first[to_pose], runs.end)
 
 
-def roots(parents: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+def roots(parents: Int32Array) -> Int32Array:
     """The lowest run of each run's component, shape (n_runs,)."""
     _flatten(parents)
     return parents
@@ -110,7 +111,7 @@ def paint(words: Words, runs: Runs, chosen: IntArray) -> None:
 
 
 @numba.njit(nogil=True, cache=True)
-def _count_runs(free, right, first):  # type: ignore[no-untyped-def]
+def _count_runs(free: Words, right: Words, first: IntArray) -> None:
     """Write how many runs begin in row iy to first[iy + 1]."""
     for iy in range(free.shape[0]):
         carry = np.uint64(0)
@@ -123,7 +124,9 @@ def _count_runs(free, right, first):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True)
-def _fill_runs(free, right, first, begin, end):  # type: ignore[no-untyped-def]
+def _fill_runs(
+    free: Words, right: Words, first: IntArray, begin: Int32Array, end: Int32Array
+) -> None:
     """Write first and last column of every run."""
     for iy in range(free.shape[0]):
         carry = np.uint64(0)
@@ -144,7 +147,14 @@ def _fill_runs(free, right, first, begin, end):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True)
-def _join(parents, allowed, rows_up, first_a, first_b, begin, end):  # type: ignore[no-untyped-def]
+def _join(
+    parents: Int32Array,
+    allowed: Words,
+    rows_up: int,
+    first_a: IntArray,
+    first_b: IntArray,
+    end: Int32Array,
+) -> None:
     """Join every two runs that an allowed move leads between."""
     for iy in range(allowed.shape[0] - rows_up):
         a, b = first_a[iy], first_b[iy + rows_up]
@@ -164,7 +174,7 @@ def _join(parents, allowed, rows_up, first_a, first_b, begin, end):  # type: ign
 
 
 @numba.njit(nogil=True, cache=True)
-def _root(parents, run):  # type: ignore[no-untyped-def]
+def _root(parents: Int32Array, run: int) -> int:
     """The root of a run, halving the path on the way."""
     while parents[run] != run:
         parents[run] = parents[parents[run]]
@@ -173,21 +183,21 @@ def _root(parents, run):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True)
-def _flatten(parents):  # type: ignore[no-untyped-def]
+def _flatten(parents: Int32Array) -> None:
     """Make every run point at its root; roots are the lowest of their component."""
     for run in range(parents.size):
         parents[run] = parents[parents[run]]
 
 
 @numba.njit(nogil=True, cache=True)
-def _paint(words, row, begin, end):  # type: ignore[no-untyped-def]
+def _paint(words: Words, row: Int32Array, begin: Int32Array, end: Int32Array) -> None:
     """Set the bits of runs."""
     for run in range(row.size):
         set_bits(words[row[run]], begin[run], end[run])
 
 
 @numba.njit(nogil=True, cache=True)
-def _next_bit(row, begin):  # type: ignore[no-untyped-def]
+def _next_bit(row: Words, begin: int) -> int:
     """The first set bit of a row of words from `begin` on, or -1."""
     word = begin >> 6
     if word >= row.size:
@@ -202,17 +212,18 @@ def _next_bit(row, begin):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True)
-def _lowest_bit(bits):  # type: ignore[no-untyped-def]
+def _lowest_bit(bits: np.uint64) -> int:
     """Number of the lowest set bit: how many lie below it."""
     return _n_bits((bits & (~bits + np.uint64(1))) - np.uint64(1))
 
 
 @numba.njit(nogil=True, cache=True)
-def _n_bits(bits):  # type: ignore[no-untyped-def]
+def _n_bits(bits: np.uint64) -> int:
     """Number of set bits, summed in pairs, nibbles and octets."""
     bits -= bits >> np.uint64(1) & np.uint64(0x5555555555555555)
     bits = (bits & np.uint64(0x3333333333333333)) + (
         bits >> np.uint64(2) & np.uint64(0x3333333333333333)
     )
     bits = bits + (bits >> np.uint64(4)) & np.uint64(0x0F0F0F0F0F0F0F0F)
-    return np.int64(bits * np.uint64(0x0101010101010101) >> np.uint64(56))
+    n: int = np.int64(bits * np.uint64(0x0101010101010101) >> np.uint64(56))
+    return n

@@ -54,7 +54,8 @@ def largest_start(
     disc_mm: float,
 ) -> Start:
     """The start that trowels the largest area, by the connectivity that is asked for."""
-    disc_of_pose = disc.labels[pose.runs.row, pose.runs.begin][pose.members[pose.first[:-1]]]
+    one_run_each = pose.members[pose.first[:-1]]
+    disc_of_pose = disc.labels[pose.runs.row[one_run_each], pose.runs.begin[one_run_each]]
     labels = np.arange(len(disc_of_pose))
     if connectivity == "disc":
         best = largest(disc, range(len(disc.boxes)), pose.lattice, disc_mm)

@@ -74,7 +74,7 @@ class SetDown:
 
 
 def largest(components: Components, labels: Iterable[int], lattice: Lattice, disc_mm: float) -> int:
-    """The component of the largest area among some; of equals the one of the lowest number."""
+    """The component of the largest raster area among some; of equals the lowest number."""
     bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
     best_label, best_mm2 = -1, -1.0
     for label in sorted(labels, key=lambda label: (-bounds_mm2[label], label)):
@@ -87,7 +87,7 @@ def largest(components: Components, labels: Iterable[int], lattice: Lattice, dis
 
 
 def zones(components: PoseComponents, lattice: Lattice, disc_mm: float) -> list[Zone]:
-    """All components of at least `ZONE_MM2`, the largest area first."""
+    """All components of at least `ZONE_MM2`, the largest raster area first."""
     found = []
     bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
     for label in np.flatnonzero(bounds_mm2 >= ZONE_MM2).tolist():
@@ -97,7 +97,7 @@ def zones(components: PoseComponents, lattice: Lattice, disc_mm: float) -> list[
         if aoi.area_mm2 >= ZONE_MM2:
             state = set_down(components, label)
             found.append(Zone(label, int(nodes.sum()), aoi, state))
-    return sorted(found, key=lambda zone: (-zone.aoi.area_mm2, zone.label))
+    return sorted(found, key=lambda zone: (-zone.aoi.raster_area_mm2, zone.label))
 
 
 def set_downs(components: PoseComponents, lattice: Lattice, disc_mm: float) -> Iterator[SetDown]:
@@ -146,10 +146,11 @@ def set_down(components: PoseComponents, label: int) -> State:
 
 
 def _area_mm2(components: Components, label: int, lattice: Lattice, disc_mm: float) -> float:
-    """What the disc covers from one component's nodes."""
+    """What the disc covers from one component's nodes, by the raster."""
     rows, columns = _window(components.boxes[label], lattice, disc_mm)
     nodes = components.nodes(label)[rows, columns]
-    return area(nodes, lattice.window(rows, columns), disc_mm, exact=True).area_mm2
+    cells = covered_cells(nodes, disc_mm / lattice.step_mm)
+    return float(cells.sum()) * lattice.step_mm**2
 
 
 def _area_bounds_mm2(
