@@ -1,15 +1,24 @@
-"""The area of interest: the floor that the disc covers, as a raster and as an outline."""
+"""The area of interest: the floor that the disc covers, as a raster and as an outline.
 
+The outline bounds the union of the discs on the reached nodes, so it is made of arcs of the
+disc's radius R only. Along a straight wall these are scallops as long as the lattice step and
+step² / 8R high: 0.036 mm for the prototype. The *clean* outline draws them as straight lines.
+"""
+
+import math
 from dataclasses import dataclass
 
-import numpy.typing as npt
 import numpy as np
-from typing import TypeAlias
+import shapely
 from shapely.geometry import Polygon
 
-from satAOI_geo.plan import FloatArray
+from satAOI_geo.discs import Arcs, IntArray, boundary, covered_cells
+from satAOI_geo.errors import InputError
+from satAOI_geo.lattice import Lattice
+from satAOI_geo.plan import BoolArray, FloatArray
 
-BoolArray: TypeAlias = npt.NDArray[np.bool_]
+CLEAN_MM = 0.05
+"""How far inside the exact outline the clean one may run: a twentieth of what a drawing shows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,26 +33,217 @@ class Loop:
 
     vertices: FloatArray
 
-    def area_mm2(
-        self,
-    ) -> float: ...  # signed: positive counter-clockwise; exact, arcs included
-    def points_mm(self, sagitta_mm: float) -> FloatArray: ...  # flattened, shape (m, 2)
+    def area_mm2(self) -> float:
+        """Area enclosed, positive when the loop runs counter-clockwise; arcs count exactly."""
+        # from the first vertex, so that coordinates far from the origin cost no digits
+        corners_mm = self.vertices[:, :2] - self.vertices[0, :2]
+        next_mm = np.roll(corners_mm, -1, axis=0)
+        crosses_mm2 = corners_mm[:, 0] * next_mm[:, 1] - next_mm[:, 0] * corners_mm[:, 1]
+        bulges = self.vertices[:, 2]
+        curved = bulges != 0
+        chords_mm = np.hypot(*(next_mm - corners_mm)[curved].T)
+        angles_rad = 4 * np.arctan(bulges[curved])
+        # of both signs, squared below
+        radii_mm = chords_mm / (2 * np.sin(angles_rad / 2))
+        segments_mm2 = radii_mm**2 * (angles_rad - np.sin(angles_rad)) / 2
+        return float(crosses_mm2.sum() / 2 + segments_mm2.sum())
+
+    def points_mm(self, sagitta_mm: float) -> FloatArray:
+        """Corners of a polygon on the loop, shape (m, 2).
+
+        Arcs are divided evenly, a quarter turn at most, so that no chord is farther than
+        sagitta_mm (above 0) from its arc. All corners lie on the loop.
+        """
+        begin_mm = self.vertices[:, :2]
+        chord_mm = np.roll(begin_mm, -1, axis=0) - begin_mm
+        half_rad = 2 * np.arctan(self.vertices[:, 2])
+        n_pieces = _n_pieces(np.hypot(*chord_mm.T), half_rad, sagitta_mm)
+        which = np.repeat(np.arange(n_pieces.size), n_pieces)
+        steps = np.arange(which.size) - np.repeat(np.cumsum(n_pieces) - n_pieces, n_pieces)
+        share = steps / n_pieces[which]
+        # A chord from the arc's begin makes the angle (1 - share) · half with the whole chord,
+        # which it meets on its right, and is sin(share · half) / sin(half) times as long.
+        half_rad, chord_mm = half_rad[which], chord_mm[which]
+        aside_rad = (1 - share) * half_rad
+        inner = steps > 0
+        scale = np.zeros(which.size)
+        scale[inner] = np.sin(share[inner] * half_rad[inner]) / np.sin(half_rad[inner])
+        along, right = scale * np.cos(aside_rad), scale * np.sin(aside_rad)
+        right_mm = np.column_stack((chord_mm[:, 1], -chord_mm[:, 0]))
+        points_mm: FloatArray = (
+            begin_mm[which] + along[:, np.newaxis] * chord_mm + right[:, np.newaxis] * right_mm
+        )
+        return points_mm
 
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """One connected part of the area: exterior counter-clockwise, holes clockwise."""
+    """One connected part of the area: exterior counter-clockwise, holes clockwise.
+
+    Parts that touch in a point are two; a part may touch itself in a point, around a hole.
+    """
 
     exterior: Loop
     holes: tuple[Loop, ...]
 
-    def area_mm2(self) -> float: ...
-    def polygon(self, sagitta_mm: float = 0.01) -> Polygon: ...
+    def area_mm2(self) -> float:
+        """Area of the part, arcs counted exactly."""
+        return self.exterior.area_mm2() + sum(hole.area_mm2() for hole in self.holes)
+
+    def polygon(self, sagitta_mm: float = 0.01) -> Polygon:
+        """The part with chords for arcs: valid, inside it, and within sagitta_mm of it."""
+        return Polygon(
+            self.exterior.points_mm(sagitta_mm),
+            [hole.points_mm(sagitta_mm) for hole in self.holes],
+        )
 
 
 @dataclass(frozen=True, slots=True)
 class Aoi:
-    raster: BoolArray  # [row, column], True where the cell centre lies within R of a reached node
-    outlines: tuple[Outline, ...]  # largest first
-    area_mm2: float  # property: of the outlines
-    raster_area_mm2
+    """The area of interest.
+
+    Attributes:
+        raster: Shape (n_rows, n_columns), True where the cell's centre lies within R, included,
+            of a reached node.
+        outlines: Its connected parts in the plan's frame, largest first.
+        raster_area_mm2: Area of the cells of the raster.
+    """
+
+    raster: BoolArray
+    outlines: tuple[Outline, ...]
+    raster_area_mm2: float
+
+    @property
+    def area_mm2(self) -> float:
+        """Area inside the outlines."""
+        return sum(outline.area_mm2() for outline in self.outlines)
+
+
+def area(
+    reached: BoolArray, lattice: Lattice, disc_radius_mm: float, *, exact: bool = False
+) -> Aoi:
+    """The area that discs of radius R cover from the reached nodes.
+
+    Args:
+        reached: Shape (n_rows, n_columns).
+        lattice: Where the nodes lie.
+        disc_radius_mm: R.
+        exact: Whether the outlines keep arcs that rise less than `CLEAN_MM` over their chord.
+
+    Raises:
+        InputError: If `reached` is not of the lattice's shape.
+    """
+    if reached.shape != lattice.shape:
+        raise InputError(
+            f"the reached nodes have the shape {reached.shape}, the lattice {lattice.shape}; "
+            "give nodes of this lattice"
+        )
+    radius = disc_radius_mm / lattice.step_mm
+    raster = covered_cells(reached, radius)
+    raster.flags.writeable = False
+    arcs = boundary(reached, radius)
+    begins_mm = np.array(lattice.origin_mm) + (arcs.begins + 0.5) * lattice.step_mm
+    vertices = np.column_stack((begins_mm, np.tan(arcs.spans_rad / 4)))
+    loops = arcs.loops
+    if not exact:
+        vertices, loops = _cleaned(vertices, arcs, disc_radius_mm)
+    raster_area_mm2 = float(np.count_nonzero(raster)) * lattice.step_mm**2
+    return Aoi(raster, _outlines(_split(vertices, loops)), raster_area_mm2)
+
+
+def _cleaned(
+    vertices: FloatArray, arcs: Arcs, disc_radius_mm: float
+) -> tuple[FloatArray, IntArray]:
+    """The vertices without scallops, and where each loop begins in them.
+
+    An arc that rises at most `CLEAN_MM` over its chord becomes the chord, and chords in line
+    become one. A chord lies in its disc, so inside the union. No two chords cross: where another
+    disc q reaches over the chord of an arc about p, it does so by a cap that p covers, and the
+    arcs about q, which are not covered, cut off other parts of q than this cap. All this is the
+    same for a turned or mirrored set of nodes, since nothing depends on where a loop begins.
+    """
+    after, before = _neighbours(arcs.loops)
+    rises_mm = disc_radius_mm * (1 - np.cos(arcs.spans_rad / 2))
+    # the quarter turn keeps discs round that are themselves of the size of CLEAN_MM
+    flat = (rises_mm <= CLEAN_MM) & (arcs.spans_rad <= math.pi / 2)
+    vertices = vertices.copy()
+    vertices[flat, 2] = 0.0
+    to_node = arcs.nodes - arcs.nodes[before]
+    from_node = arcs.nodes[after] - arcs.nodes
+    # between two equal steps from node to node the chord is that same step
+    equal = (to_node == from_node).all(axis=1) & to_node.any(axis=1)
+    in_line = flat & equal
+    kept = ~(in_line & in_line[before])
+    return vertices[kept], np.concatenate(([0], np.cumsum(kept)))[arcs.loops]
+
+
+def _neighbours(loops: IntArray) -> tuple[IntArray, IntArray]:
+    """Index of the arc after and of the arc before each arc in its loop, shape (n,) each."""
+    indices = np.arange(loops[-1])
+    after, before = indices + 1, indices - 1
+    after[loops[1:] - 1] = loops[:-1]
+    before[loops[:-1]] = loops[1:] - 1
+    return after, before
+
+
+def _split(vertices: FloatArray, loops: IntArray) -> list[Loop]:
+    """The loops, each from its lowest, then leftmost vertex on."""
+    split = []
+    for begin, end in zip(loops[:-1], loops[1:], strict=True):
+        chain = vertices[begin:end]
+        lowest = np.lexsort((chain[:, 0], chain[:, 1]))[0]
+        chain = np.roll(chain, -lowest, axis=0)
+        chain.flags.writeable = False
+        split.append(Loop(chain))
+    return split
+
+
+def _outlines(loops: list[Loop]) -> tuple[Outline, ...]:
+    """Loops gathered into parts: the counter-clockwise ones with the holes inside them."""
+    sized = sorted(((loop.area_mm2(), loop) for loop in loops), key=_largest_first)
+    exteriors = [loop for area_mm2, loop in sized if area_mm2 > 0]
+    holes = [loop for area_mm2, loop in sized if area_mm2 <= 0]
+    owned: list[list[Loop]] = [[] for _ in exteriors]
+    for hole, owner in zip(holes, _owners(exteriors, holes), strict=True):
+        owned[owner].append(hole)
+    return tuple(
+        Outline(exterior, tuple(inside)) for exterior, inside in zip(exteriors, owned, strict=True)
+    )
+
+
+def _largest_first(sized: tuple[float, Loop]) -> tuple[int, float, float]:
+    """Sorting key of a loop: size to the square millimetre, then lowest, then leftmost."""
+    area_mm2, loop = sized
+    x_mm, y_mm, _ = loop.vertices[0]
+    return -round(abs(area_mm2)), float(y_mm), float(x_mm)
+
+
+def _owners(exteriors: list[Loop], holes: list[Loop]) -> IntArray:
+    """Index of the exterior that each hole lies in; exteriors ordered largest first.
+
+    The smallest that is larger than the hole and contains a point of it: loops may touch but do
+    not cross, so of those larger than the hole each contains all of it or nothing.
+    """
+    sagitta_mm = 0.01
+    tree = shapely.STRtree(
+        [Polygon(hole.points_mm(sagitta_mm)).representative_point() for hole in holes]
+    )
+    owners = np.zeros(len(holes), dtype=np.int64)
+    hole_areas_mm2 = np.array([-hole.area_mm2() for hole in holes])
+    for index, exterior in enumerate(exteriors):
+        inside = tree.query(Polygon(exterior.points_mm(sagitta_mm)), predicate="contains")
+        owners[inside[hole_areas_mm2[inside] < exterior.area_mm2()]] = index
+    return owners
+
+
+def _n_pieces(chords_mm: FloatArray, half_rad: FloatArray, sagitta_mm: float) -> IntArray:
+    """Into how many chords each piece of a loop is divided, shape (n,); straight ones into 1."""
+    n_pieces = np.ones(chords_mm.size, dtype=np.int64)
+    curved = half_rad != 0
+    radii_mm = chords_mm[curved] / (2 * np.sin(np.abs(half_rad[curved])))
+    # a chord over the angle t rises r·(1 - cos(t / 2)) = 2r·sin²(t / 4)
+    rise = np.sqrt(sagitta_mm / (2 * radii_mm))
+    allowed_rad = 4 * np.arcsin(np.minimum(rise, math.sin(math.pi / 8)))
+    # what rounding adds to a whole number of pieces is no reason for one more
+    n_pieces[curved] = np.ceil(2 * np.abs(half_rad[curved]) / allowed_rad - 1e-9)
+    return np.maximum(n_pieces, 1)
