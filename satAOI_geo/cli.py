@@ -164,11 +164,11 @@ def commands() -> None:
 )
 @click.option(
     "--connectivity",
-    type=click.Choice(["disc"]),
-    default="disc",
+    type=click.Choice(["pose", "disc"]),
+    default="pose",
     show_default=True,
-    help="What joins two neighbouring disc positions, e.g. --connectivity disc: that the robot "
-    "can stand at both. This is an upper estimate.",
+    help="What joins neighbouring disc positions: that the robot can move from the one to the "
+    "other, or that it can stand at each, which is an upper estimate, e.g. --connectivity disc",
 )
 @click.option(
     "--clearance",
@@ -231,7 +231,7 @@ def run(  # noqa: PLR0913  one parameter an option
     raster: Path | None,
     start: tuple[float, float] | None,
     robot: str,
-    connectivity: Literal["disc"],
+    connectivity: Literal["pose", "disc"],
     clearance: float,
     step: float,
     directions: int,
@@ -375,7 +375,6 @@ def robots(name: str | None) -> int:
     """
     from satAOI_adapters.robot_read import robot_from, toml_of
     from satAOI_adapters.terminal import write_table
-
     from satAOI_geo.robot import ROBOTS
 
     if name is not None:

@@ -29,11 +29,12 @@ def lines_of(report: Report) -> list[tuple[str, str]]:
     floor, aoi, start = report.floor, report.aoi, report.start
     x_mm, y_mm = start.xy_mm
     obstacles = f"{floor.obstacle_percent:.1f} % of the floor, {floor.n_obstacles} pieces"
-    area = f"{aoi.percent_of_free:.1f} % of the free floor, {aoi.n_parts} parts"
+    share = f"{aoi.percent_of_free:.1f} % of the free floor, {aoi.n_parts} parts"
     return [
         ("floor", f"{floor.area_m2:.2f} m² ({floor.source})"),
         ("obstacles", f"{floor.obstacle_area_m2:.2f} m² ({obstacles})"),
         ("free floor", f"{floor.free_area_m2:.2f} m²"),
         ("start", f"({x_mm:.0f}, {y_mm:.0f}) mm ({start.source})"),
-        (f"{aoi.connectivity}-connected area", f"{aoi.area_m2:.2f} m² ({area})"),
+        ("area of interest", f"{aoi.area_m2:.2f} m² ({share}, {aoi.connectivity}-connected)"),
+        ("upper estimate", f"{report.disc_connected.area_m2:.2f} m² (disc-connected)"),
     ]
