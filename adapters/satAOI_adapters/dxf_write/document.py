@@ -93,7 +93,8 @@ def _opened(source: Source) -> Drawing:
 
 def _drawn(plan: FloorPlan) -> Drawing:
     """A new drawing of a plan, on layers named after the kinds of obstacles."""
-    document = ezdxf.new(DXF2010)
+    with _fixed_meta_data():
+        document = ezdxf.new(DXF2010)
     floor_pen = Pen(document.modelspace(), plan.frame, "FLOOR")
     for polygon in polygons_in([plan.floor]):
         floor_pen.shape(polygon)

@@ -18,6 +18,7 @@ class Style:
     Attributes:
         name: Of the layer.
         colour: AutoCAD colour index, 1 to 255.
+        rgb: The same more exactly, for programs that know true colours, or None.
         lineweight: In hundredths of a millimetre on paper.
         description: For the layer manager.
     """
@@ -26,9 +27,12 @@ class Style:
     colour: int
     lineweight: int
     description: str
+    rgb: tuple[int, int, int] | None = None
 
 
-AOI: Final = Style("SATAOI-AOI", 71, 13, "floor the robot can trowel, one hatch a part")
+AOI: Final = Style(
+    "SATAOI-AOI", 71, 13, "floor the robot can trowel, one hatch a part", rgb=(197, 232, 183)
+)
 EDGE: Final = Style("SATAOI-AOI-EDGE", 94, 50, "outline of that floor, with true arcs")
 START: Final = Style("SATAOI-START", 6, 35, "disc of the robot where it starts")
 OBSTACLE: Final = Style("SATAOI-OBSTACLE", 8, 25, "floor and obstacles as they were read")
@@ -45,9 +49,9 @@ KIND_COLOURS: Final = {
     Kind.HOLE: 200,
     Kind.EMBEDDED: 30,
     Kind.EQUIPMENT: 132,
-    Kind.UNCLASSIFIED: 42,
+    Kind.UNCLASSIFIED: 54,
 }
-"""Colour index of an obstacle's outline: red, blue, violet, orange, teal, ochre."""
+"""Colour index of an obstacle's outline: red, blue, violet, orange, teal, olive."""
 
 
 def add_layers(document: Drawing) -> None:
@@ -61,5 +65,7 @@ def add_layers(document: Drawing) -> None:
         layer.on()
         layer.thaw()
         layer.color = style.colour
+        if style.rgb:
+            layer.rgb = style.rgb
         layer.dxf.lineweight = style.lineweight
         layer.description = style.description

@@ -8,24 +8,29 @@ import math
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import PurePath
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-from ezdxf import bbox
 from ezdxf.document import Drawing
 from ezdxf.layouts import Modelspace
 from ezdxf.lldxf.const import MTEXT_MIDDLE_LEFT
 
-from satAOI_adapters.dxf_write.layers import AOI, EDGE, KIND_COLOURS, NOTE, OBSTACLE, START
+from satAOI_adapters.dxf_write.layers import (
+    AOI,
+    AOI_TRANSPARENCY,
+    EDGE,
+    KIND_COLOURS,
+    NOTE,
+    OBSTACLE,
+    START,
+)
 from satAOI_adapters.dxf_write.metadata import attach, one_line
 from satAOI_adapters.dxf_write.pen import Pen
+from satAOI_adapters.dxf_write.place import Bounds, entity_bounds, free_place
 from satAOI_geo.aoi import Loop, Outline
 from satAOI_geo.pipeline import Result
 from satAOI_geo.plan import FloatArray, Frame, Kind
 from satAOI_geo.report import Report
-
-Bounds: TypeAlias = tuple[float, float, float, float]
-"""Left, bottom, right, top in drawing units."""
 
 TEXT_STYLE: Final = "SATAOI"
 FONT: Final = "arial.ttf"
@@ -50,9 +55,6 @@ LONGEST_VALUE: Final = 48
 MOST_FINDINGS: Final = 6
 """Sorts of findings that are listed."""
 
-FAR: Final = 20.0
-"""Plan sizes beyond which an entity counts as astray: the note does not go so far to avoid it."""
-
 
 @dataclass(frozen=True, slots=True)
 class Swatch:
@@ -61,13 +63,13 @@ class Swatch:
     Attributes:
         line: Colour index of its edge.
         lineweight: Of its edge, in hundredths of a millimetre.
-        fill: Colour index of its inside, or None.
+        filled: Whether it is filled as the area of interest.
         is_round: Whether it is a disc.
     """
 
     line: int
     lineweight: int
-    fill: int | None = None
+    filled: bool = False
     is_round: bool = False
 
 
@@ -86,7 +88,7 @@ class Row:
 
 
 def draw_note(document: Drawing, result: Result) -> None:
-    """Draw the note to the right of the plan, clear of everything that is drawn already."""
+    """Draw the note beside the plan, clear of everything that is drawn already."""
     space = document.modelspace()
     if TEXT_STYLE not in document.styles:
         document.styles.add(TEXT_STYLE, font=FONT)
@@ -99,10 +101,9 @@ def draw_note(document: Drawing, result: Result) -> None:
         height * (width + 2 * MARGIN),
         height * (sum(row.pitch for row in rows) + 2 * MARGIN),
     )
-    left, top = free_place(plan, size, gap=GAP * height, taken=entity_bounds(space))
-    frame_pen = Pen(space, Frame(), NOTE.name)
-    frame_pen.ring(_corners((left, top - size[1], left + size[0], top)))
-    x, y = left + MARGIN * height, top - MARGIN * height
+    within = free_place(plan, size, gap=GAP * height, taken=entity_bounds(space))
+    Pen(space, Frame(), NOTE.name).ring(_corners(within))
+    x, y = within[0] + MARGIN * height, within[3] - MARGIN * height
     for row in rows:
         middle = y - row.pitch * height / 2
         _draw_row(space, row, (x, middle), height=height, value_at=value_at)
@@ -133,50 +134,13 @@ def plan_bounds(result: Result) -> Bounds:
     return float(left), float(bottom), float(right), float(top)
 
 
-def free_place(
-    plan: Bounds, size: tuple[float, float], *, gap: float, taken: FloatArray
-) -> tuple[float, float]:
-    """Upper left corner of a free rectangle beside the plan, level with its top.
-
-    Args:
-        plan: Bounds of the plan.
-        size: Width and height of the rectangle.
-        gap: To be kept on all sides.
-        taken: Bounds of what is drawn already, shape (n, 4).
-    """
-    top = plan[3]
-    far = plan[2] + FAR * max(plan[2] - plan[0], plan[3] - plan[1])
-    in_band = (taken[:, 3] > top - size[1] - gap) & (taken[:, 1] < top + gap) & (taken[:, 2] < far)
-    left = plan[2] + gap
-    # from left to right, each box in the way pushes the place past itself
-    for box_left, box_right in sorted(map(tuple, taken[in_band][:, [0, 2]].tolist())):
-        if box_left < left + size[0] + gap and left - gap < box_right:
-            left = box_right + gap
-    return left, top
-
-
-def entity_bounds(space: Modelspace) -> FloatArray:
-    """Bounds of the entities that have any, shape (n, 4), in drawing units."""
-    cache = bbox.Cache()
-    found = []
-    for entity in space:
-        try:
-            box = bbox.extents([entity], fast=True, cache=cache)
-        except Exception:  # noqa: BLE001, S112 - a damaged entity raises whatever comes to it
-            # what cannot be measured is not drawn either: there is nothing to avoid
-            continue
-        if box.has_data:
-            found.append((*box.extmin.vec2, *box.extmax.vec2))
-    return np.array(found, dtype=np.float64).reshape(-1, 4)
-
-
 def _area_rows(report: Report) -> list[Row]:
     aoi = report.aoi
     upper = " (upper estimate)" if aoi.connectivity == "disc" else ""
     area = f"{aoi.area_m2:.2f} m² = {aoi.percent_of_free:.1f} % of the free floor"
     return [
         Row("Floor the robot can trowel"),
-        Row("Area of interest", area, Swatch(EDGE.colour, EDGE.lineweight, AOI.colour)),
+        Row("Area of interest", area, Swatch(EDGE.colour, EDGE.lineweight, filled=True)),
         Row("Connectivity", f"{aoi.connectivity}-connected{upper}"),
         Row("Connected parts", str(aoi.n_parts)),
     ]
@@ -189,7 +153,7 @@ def _floor_rows(report: Report, result: Result) -> list[Row]:
     edge = Swatch(OBSTACLE.colour, OBSTACLE.lineweight)
     return [
         Row("Plan as it was read"),
-        Row("Floor", f"{floor.area_m2:.2f} m², {floor.source}", edge),
+        Row("Floor", f"{floor.area_m2:.2f} m² ({floor.source})", edge),
         Row("Free floor", f"{floor.free_area_m2:.2f} m²"),
         Row("Obstacles", obstacles),
         *(
@@ -202,11 +166,15 @@ def _floor_rows(report: Report, result: Result) -> list[Row]:
 
 def _run_rows(report: Report, frame: Frame) -> list[Row]:
     source, robot, lattice = report.input, report.robot, report.lattice
-    x, y = (length_mm / frame.mm_per_unit for length_mm in report.start.xy_mm)
+    # a tenth of a millimetre and no more digits than that takes in the drawing's unit
+    digits = max(0, 1 + round(math.log10(frame.mm_per_unit)))
+    x, y = (round(mm / frame.mm_per_unit, digits) for mm in report.start.xy_mm)
     start = Swatch(START.colour, START.lineweight, is_round=True)
     return [
         Row("Run"),
-        Row("Start of the disc", f"{x:.10g}, {y:.10g} {source.unit}, {report.start.source}", start),
+        Row(
+            "Start of the disc", f"{x:.12g}, {y:.12g} {source.unit} ({report.start.source})", start
+        ),
         Row("Robot", f"{robot.name}, disc radius {robot.disc_radius_mm:g} mm"),
         Row("Clearance", f"{robot.clearance_mm:g} mm"),
         Row(
@@ -214,7 +182,7 @@ def _run_rows(report: Report, frame: Frame) -> list[Row]:
             f"{lattice.step_mm:g} mm, {lattice.n_directions} directions, {lattice.n_swings} swings",
         ),
         Row("Drawing", f"{PurePath(source.path).name or source.format}"),
-        Row("Unit", f"{source.unit}, {source.unit_source}"),
+        Row("Unit", f"{source.unit} ({source.unit_source})"),
     ]
 
 
@@ -261,10 +229,12 @@ def _draw_swatch(space: Modelspace, swatch: Swatch, at: tuple[float, float], hei
     width, half_height = SWATCH[0] * height, SWATCH[1] * height / 2
     corners = _corners((x, y - half_height, x + width, y + half_height))
     line_pen = Pen(space, Frame(), NOTE.name, swatch.line)
-    if swatch.fill is not None:
+    if swatch.filled:
         straight = np.column_stack((corners[:-1], np.zeros(4)))
-        hatch = Pen(space, Frame(), NOTE.name, swatch.fill).fill(Outline(Loop(straight), ()))
-        attach(hatch, {"legend": "sample"})
+        hatch = Pen(space, Frame(), NOTE.name, AOI.colour).fill(Outline(Loop(straight), ()))
+        hatch.rgb = AOI.rgb
+        hatch.transparency = AOI_TRANSPARENCY
+        attach(hatch, {"sample": AOI.name})
     edge = (
         line_pen.circle((x + width / 2, y), half_height)
         if swatch.is_round

@@ -1,0 +1,88 @@
+"""Where beside the plan there is room for a note."""
+
+from collections.abc import Iterator
+from typing import TypeAlias
+
+import numpy as np
+from ezdxf import bbox
+from ezdxf.entities import DXFGraphic, LWPolyline, Polyline
+from ezdxf.layouts import Modelspace
+
+from satAOI_geo.plan import FloatArray
+
+Bounds: TypeAlias = tuple[float, float, float, float]
+"""Left, bottom, right, top in drawing units."""
+
+
+def free_place(plan: Bounds, size: tuple[float, float], *, gap: float, taken: FloatArray) -> Bounds:
+    """A rectangle clear of everything: right of the plan, left of it, below or above.
+
+    The first of the four that lies no farther off than the plan is long, else the nearest.
+
+    Args:
+        plan: Bounds of the plan.
+        size: Width and height of the rectangle.
+        gap: Room to keep around it.
+        taken: Bounds of what is drawn already, shape (n, 4).
+    """
+    left, bottom, right, top = plan
+    width, height = size
+    lows, highs = taken[:, :2], taken[:, 2:]
+    beside = (lows[:, 1] < top + gap) & (highs[:, 1] > top - height - gap)
+    along = (lows[:, 0] < left + width + gap) & (highs[:, 0] > left - gap)
+    to_right = _first_gap(right, width, gap, lows[beside, 0], highs[beside, 0])
+    to_left = -_first_gap(-left, width, gap, -highs[beside, 0], -lows[beside, 0])
+    below = -_first_gap(-bottom, height, gap, -highs[along, 1], -lows[along, 1])
+    above = _first_gap(top, height, gap, lows[along, 1], highs[along, 1])
+    places = (
+        (to_right - right, (to_right, top - height, to_right + width, top)),
+        (left - to_left, (to_left - width, top - height, to_left, top)),
+        (bottom - below, (left, below - height, left + width, below)),
+        (above - top, (left, above, left + width, above + height)),
+    )
+    near = max(right - left, top - bottom)
+    return min(places, key=lambda place: max(place[0], near))[1]
+
+
+def entity_bounds(space: Modelspace) -> FloatArray:
+    """Bounds of what is drawn, shape (n, 4): of each entity, of a polyline each piece."""
+    cache = bbox.Cache()
+    found = []
+    for piece in _pieces(space):
+        try:
+            box = bbox.extents([piece], fast=True, cache=cache)
+        except Exception:  # noqa: BLE001, S112 - a damaged entity raises whatever comes to it
+            # what cannot be measured is not drawn either: there is nothing to avoid
+            continue
+        if box.has_data:
+            found.append((*box.extmin.vec2, *box.extmax.vec2))
+    return np.array(found, dtype=np.float64).reshape(-1, 4)
+
+
+def _pieces(space: Modelspace) -> Iterator[DXFGraphic]:
+    """Entities, polylines in pieces: the box around a site boundary would leave no room at all."""
+    for entity in space:
+        if isinstance(entity, LWPolyline | Polyline):
+            yield from entity.virtual_entities()
+        else:
+            yield entity
+
+
+def _first_gap(
+    edge: float, length: float, gap: float, lows: FloatArray, highs: FloatArray
+) -> float:
+    """Least start, a gap beyond the edge or more, of a stretch clear of the intervals.
+
+    Args:
+        edge: Where the plan ends.
+        length: Of the stretch.
+        gap: To keep at both its ends.
+        lows: Where the intervals begin, shape (n,).
+        highs: Where they end, shape (n,).
+    """
+    start = edge + gap
+    # in the order of their beginnings, each interval in the way pushes the stretch past its end
+    for k in np.argsort(lows, kind="stable"):
+        if lows[k] < start + length + gap and highs[k] > start - gap:
+            start = float(highs[k]) + gap
+    return start
