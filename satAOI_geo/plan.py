@@ -6,13 +6,14 @@ between it and the drawing it came from.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from typing import Final, TypeAlias
+from typing import Final, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 import shapely
+import shapely.affinity
 from shapely.geometry import LineString, MultiPolygon, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
@@ -20,6 +21,7 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
 IntArray: TypeAlias = npt.NDArray[np.int64]
 Region: TypeAlias = Polygon | MultiPolygon
+AnyGeometry = TypeVar("AnyGeometry", bound=BaseGeometry)
 
 CONTACT_MM: Final = 1e-4
 """Sets closer than this are in contact.
@@ -205,6 +207,21 @@ class FloorPlan:
         around = box(left - margin_mm, bottom - margin_mm, right + margin_mm, top + margin_mm)
         return as_region(around.difference(self.floor))
 
+    def turned(self, turn_rad: float) -> "FloorPlan":
+        """The same plan seen in axes turned by an angle, counter-clockwise about its origin."""
+        if turn_rad == 0.0:
+            return self
+        frame = replace(self.frame, turn_rad=self.frame.turn_rad + turn_rad)
+        return replace(
+            self,
+            floor=as_region(_seen_in(self.floor, turn_rad)),
+            obstacles=tuple(
+                replace(o, shape=_shape_seen_in(o.shape, turn_rad)) for o in self.obstacles
+            ),
+            frame=frame,
+            start_mm=None if self.start_mm is None else _point_seen_in(self.start_mm, turn_rad),
+        )
+
     def obstacle_region(self) -> Region:
         """The part of the floor that polygons and circles occupy, overlaps counted once."""
         solids = [o.region() for o in self.obstacles if not isinstance(o.shape, LineString)]
@@ -231,3 +248,25 @@ def polygons_in(geometries: Sequence[BaseGeometry]) -> list[Polygon]:
         else:
             found.extend(polygons_in(getattr(geometry, "geoms", ())))
     return found
+
+
+def _seen_in(geometry: AnyGeometry, turn_rad: float) -> AnyGeometry:
+    """A geometry in axes turned about the origin."""
+    seen: AnyGeometry = shapely.affinity.rotate(
+        geometry, -turn_rad, origin=(0.0, 0.0), use_radians=True
+    )
+    return seen
+
+
+def _point_seen_in(point_mm: tuple[float, float], turn_rad: float) -> tuple[float, float]:
+    """A point in axes turned about the origin."""
+    x_mm, y_mm = Frame(turn_rad=turn_rad).to_local_mm(point_mm).tolist()
+    return x_mm, y_mm
+
+
+def _shape_seen_in(shape: Shape, turn_rad: float) -> Shape:
+    """A shape in axes turned about the origin."""
+    if isinstance(shape, Circle):
+        x_mm, y_mm = _point_seen_in((shape.x_mm, shape.y_mm), turn_rad)
+        return replace(shape, x_mm=x_mm, y_mm=y_mm)
+    return _seen_in(shape, turn_rad)

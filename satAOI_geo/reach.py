@@ -17,11 +17,11 @@ import numpy as np
 import numpy.typing as npt
 import scipy.ndimage
 
-from satAOI_geo.freespace import Engine, FreeSpace, moves, run_threads, steps_right
+from satAOI_geo.freespace import Engine, FreeSpace, Move, moves, run_threads, steps_right
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.robot import Robot
-from satAOI_geo.runs import Runs, SliceRuns, join, paint, roots
+from satAOI_geo.runs import Runs, SliceRuns, links, paint, roots, unite
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,15 +101,9 @@ class PoseComponents:
 
         def connect(a1: int) -> None:
             for move in moves(engine, robot, space, a1):
+                pairs = links_of(runs, move)
                 with one_at_a_time:
-                    join(
-                        parents,
-                        runs,
-                        pose=(move.a1, move.swing),
-                        to_pose=(move.to_a1, move.to_swing),
-                        rows_up=move.rows_up,
-                        allowed=move.allowed,
-                    )
+                    unite(parents, pairs)
 
         run_threads(
             connect, n_directions, progress and (lambda share: progress((1 + 3 * share) / 4))
@@ -157,3 +151,14 @@ class PoseComponents:
         words = self.lattice.no_nodes()
         paint(words, self.runs, self.runs_of(label))
         return self.lattice.unpacked(words)
+
+
+def links_of(runs: Runs, move: Move) -> npt.NDArray[np.int32]:
+    """The pairs of runs that a move leads between, shape (n, 3); see `runs.links`."""
+    return links(
+        runs,
+        pose=(move.a1, move.swing),
+        to_pose=(move.to_a1, move.to_swing),
+        rows_up=move.rows_up,
+        allowed=move.allowed,
+    )

@@ -77,26 +77,31 @@ class SliceRuns:
         return cls(first, begin, end)
 
 
-def join(
-    parents: Int32Array,
-    runs: Runs,
-    *,
-    pose: tuple[int, int],
-    to_pose: tuple[int, int],
-    rows_up: int,
-    allowed: Words,
-) -> None:
-    """Join the runs that a move leads between.
+def links(
+    runs: Runs, *, pose: tuple[int, int], to_pose: tuple[int, int], rows_up: int, allowed: Words
+) -> Int32Array:
+    """The pairs of runs that a move leads between.
 
     Args:
-        parents: Shape (n_runs,), the union-find forest; changed in place.
         runs: All runs.
         pose: (a1, swing) the move starts from.
         to_pose: (a1, swing) it ends at.
         rows_up: 1 when it ends one row higher, else 0.
         allowed: Nodes it may start from, shape (n_rows, n_words).
+
+    Returns:
+        Shape (n, 3): a run, the run it leads to, and the column of a node where it does.
     """
-    _join(parents, allowed, rows_up, runs.first[pose], runs.first[to_pose], runs.end)
+    first_a, first_b = runs.first[pose], runs.first[to_pose]
+    # two sorted rows of runs overlap in fewer pairs than there are runs in both
+    found = np.empty((first_a[-1] - first_a[0] + first_b[-1] - first_b[0], 3), dtype=np.int32)
+    n = _links(allowed, rows_up, first_a, first_b, runs.end, found)
+    return found[:n]
+
+
+def unite(parents: Int32Array, pairs: Int32Array) -> None:
+    """Join linked runs, shape (n, 3), in the union-find forest `parents`, shape (n_runs,)."""
+    _unite(parents, pairs)
 
 
 def roots(parents: Int32Array) -> Int32Array:
@@ -147,15 +152,16 @@ def _fill_runs(
 
 
 @numba.njit(nogil=True, cache=True)
-def _join(
-    parents: Int32Array,
+def _links(
     allowed: Words,
     rows_up: int,
     first_a: IntArray,
     first_b: IntArray,
     end: Int32Array,
-) -> None:
-    """Join every two runs that an allowed move leads between."""
+    found: Int32Array,
+) -> int:
+    """Write every two runs that an allowed move leads between; how many there are."""
+    n = 0
     for iy in range(allowed.shape[0] - rows_up):
         a, b = first_a[iy], first_b[iy + rows_up]
         ix = _next_bit(allowed[iy], 0)
@@ -164,13 +170,22 @@ def _join(
                 a += 1
             while end[b] < ix:
                 b += 1
-            root_a, root_b = _root(parents, a), _root(parents, b)
-            if root_a < root_b:
-                parents[root_b] = root_a
-            elif root_b < root_a:
-                parents[root_a] = root_b
-            # one allowed move joins the two runs: the next that matters lies beyond either's end
+            found[n] = a, b, ix
+            n += 1
+            # one allowed move links the two runs: the next that matters lies beyond either's end
             ix = _next_bit(allowed[iy], min(end[a], end[b]) + 1)
+    return n
+
+
+@numba.njit(nogil=True, cache=True)
+def _unite(parents: Int32Array, pairs: Int32Array) -> None:
+    """Hang the higher of two roots below the lower, pair by pair."""
+    for k in range(pairs.shape[0]):
+        root_a, root_b = _root(parents, pairs[k, 0]), _root(parents, pairs[k, 1])
+        if root_a < root_b:
+            parents[root_b] = root_a
+        else:
+            parents[root_a] = root_b
 
 
 @numba.njit(nogil=True, cache=True)
@@ -225,5 +240,4 @@ def _n_bits(bits: np.uint64) -> int:
         bits >> np.uint64(2) & np.uint64(0x3333333333333333)
     )
     bits = bits + (bits >> np.uint64(4)) & np.uint64(0x0F0F0F0F0F0F0F0F)
-    n: int = np.int64(bits * np.uint64(0x0101010101010101) >> np.uint64(56))
-    return n
+    return int(bits * np.uint64(0x0101010101010101) >> np.uint64(56))
