@@ -22,7 +22,7 @@ def opened_mm2(case: plans.Case) -> float:
     centres = inner.difference(blocked)
     start = Point(case.start_mm)
     (part,) = (p for p in getattr(centres, "geoms", [centres]) if p.contains(start))
-    return part.buffer(radius_mm, quad_segs=QUARTER_SEGMENTS).area
+    return float(part.buffer(radius_mm, quad_segs=QUARTER_SEGMENTS).area)
 
 
 @pytest.mark.parametrize("name", sorted(set(plans.CASES) - {"corridor_exactly_as_wide_as_vehicle"}))
@@ -47,7 +47,7 @@ def test_disc_reaches_into_the_slot_as_far_as_the_vehicle_lets_it() -> None:
 def test_room_on_a_lattice_is_the_union_of_the_discs_on_its_nodes() -> None:
     x_mm, y_mm = np.meshgrid(np.arange(355, 500, 10.0), np.arange(355, 450, 10.0))
     discs = shapely.buffer(shapely.points(x_mm.ravel(), y_mm.ravel()), 350, quad_segs=2000)
-    # the room in which those are the free nodes: 145 + 5 more columns than rows
+    # in this room the free nodes run from 355 to 495 and from 355 to 445
     area_mm2 = plans.room_on_lattice_mm2(850.0, 800.0)
     assert shapely.union_all(discs).area == pytest.approx(area_mm2, abs=0.2)
 
