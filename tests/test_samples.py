@@ -1,4 +1,4 @@
-"""The samples are what samples/README.md says; the reading here shares no code with the reader's."""
+"""The samples are what samples/README.md says; this reading of them shares no code with ours."""
 
 import math
 import os
