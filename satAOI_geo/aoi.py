@@ -7,6 +7,7 @@ step² / 8R high: 0.036 mm for the prototype. The *clean* outline draws them as 
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -54,10 +55,47 @@ class Loop:
         Arcs are divided evenly, a quarter turn at most, so that no chord is farther than
         sagitta_mm (above 0) from its arc. All corners lie on the loop.
         """
+        n_pieces = self._n_pieces(sagitta_mm)
+        points_mm, _, _ = self._divided(n_pieces)
+        return points_mm
+
+    def equal_area_points_mm(self, sagitta_mm: float) -> FloatArray:
+        """Corners of a polygon of the loop's own area, shape (m, 2), about sagitta_mm from it.
+
+        The corners between the ends of an arc of angle θ, cut into k pieces of φ, move from the
+        radius r to q·r, such that the fan of triangles sinφ (2q + (k - 2) q²) r²/2 has the area of
+        the sector, θ r²/2.
+        """
+        n_pieces = np.maximum(self._n_pieces(sagitta_mm), np.where(self.vertices[:, 2] != 0, 2, 1))
+        points_mm, arc, inner = self._divided(n_pieces)
+        arc, k = arc[inner], n_pieces[arc[inner]]
+        begin_mm = self.vertices[arc, :2]
+        chord_mm = np.roll(self.vertices[:, :2], -1, axis=0)[arc] - begin_mm
+        half_rad = 2 * np.arctan(self.vertices[arc, 2])
+        left_mm = np.column_stack((-chord_mm[:, 1], chord_mm[:, 0]))
+        centre_mm = begin_mm + (chord_mm + left_mm / np.tan(half_rad)[:, np.newaxis]) / 2
+        target = 2 * half_rad / np.sin(2 * half_rad / k)
+        # the root of (k - 2) q² + 2q = target, in a form that k = 2 does not divide by 0
+        q = target / (1 + np.sqrt(1 + (k - 2) * target))
+        points_mm[inner] = centre_mm + q[:, np.newaxis] * (points_mm[inner] - centre_mm)
+        return points_mm
+
+    def _n_pieces(self, sagitta_mm: float) -> IntArray:
+        """Pieces of equal angle each arc is cut into, 1 for a straight line, shape (n,)."""
+        chord_mm = np.roll(self.vertices[:, :2], -1, axis=0) - self.vertices[:, :2]
+        half_rad = 2 * np.arctan(self.vertices[:, 2])
+        return _n_pieces(np.hypot(*chord_mm.T), half_rad, sagitta_mm)
+
+    def _divided(self, n_pieces: IntArray) -> tuple[FloatArray, IntArray, BoolArray]:
+        """The loop with each piece cut evenly in angle.
+
+        Returns:
+            The points, shape (m, 2); for each the piece it lies on; whether it lies between the
+            piece's ends.
+        """
         begin_mm = self.vertices[:, :2]
         chord_mm = np.roll(begin_mm, -1, axis=0) - begin_mm
         half_rad = 2 * np.arctan(self.vertices[:, 2])
-        n_pieces = _n_pieces(np.hypot(*chord_mm.T), half_rad, sagitta_mm)
         which = np.repeat(np.arange(n_pieces.size), n_pieces)
         steps = np.arange(which.size) - np.repeat(np.cumsum(n_pieces) - n_pieces, n_pieces)
         share = steps / n_pieces[which]
@@ -73,7 +111,7 @@ class Loop:
         points_mm: FloatArray = (
             begin_mm[which] + along[:, np.newaxis] * chord_mm + right[:, np.newaxis] * right_mm
         )
-        return points_mm
+        return points_mm, which, inner
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +133,14 @@ class Outline:
         return Polygon(
             self.exterior.points_mm(sagitta_mm),
             [hole.points_mm(sagitta_mm) for hole in self.holes],
+        )
+
+
+    def equal_area_polygon(self, sagitta_mm: float = 0.01) -> Polygon:
+        """The part with corners set about its arcs so that the polygon has the part's area."""
+        return Polygon(
+            self.exterior.equal_area_points_mm(sagitta_mm),
+            [hole.equal_area_points_mm(sagitta_mm) for hole in self.holes],
         )
 
 
@@ -189,7 +235,7 @@ def _neighbours(loops: IntArray) -> tuple[IntArray, IntArray]:
 def _split(vertices: FloatArray, loops: IntArray) -> list[Loop]:
     """The loops, each from its lowest, then leftmost vertex on."""
     split = []
-    for begin, end in zip(loops[:-1], loops[1:], strict=True):
+    for begin, end in pairwise(loops):
         chain = vertices[begin:end]
         lowest = np.lexsort((chain[:, 0], chain[:, 1]))[0]
         chain = np.roll(chain, -lowest, axis=0)

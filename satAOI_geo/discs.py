@@ -13,7 +13,7 @@ triple 21, 28, 35 alone puts dozens of circles through one point, and discs 70 s
 
 import math
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numba
 import numpy as np
@@ -34,6 +34,50 @@ WELD = 1e-7
 an end by 1e-13, and by 2e-9 where two discs all but touch."""
 
 TURN = 2 * math.pi
+
+Offset: TypeAlias = tuple[int, int]
+"""x and y from one node to another, in steps."""
+
+
+class Gap(NamedTuple):
+    """A stretch of a node's circle that no disc looked at so far covers, counter-clockwise.
+
+    With (0, 0) for opener and closer nothing covers the circle yet.
+    """
+
+    begin_rad: float
+    end_rad: float
+    opener: Offset
+    closer: Offset
+
+
+class Arc(NamedTuple):
+    """An arc of the boundary: the node it runs about, its ends, its angle."""
+
+    node: Offset
+    begin: tuple[float, float]
+    end: tuple[float, float]
+    span_rad: float
+
+
+class Buckets(NamedTuple):
+    """Exposed nodes, sorted into squares so that those near a place are found quickly.
+
+    Attributes:
+        x: Columns of the nodes, shape (n,).
+        y: Rows of the nodes, shape (n,).
+        first: The nodes of square [row, column] start at first[row * columns + column].
+        rows: Squares in y.
+        columns: Squares in x.
+        side: Of a square, in steps.
+    """
+
+    x: IntArray
+    y: IntArray
+    first: IntArray
+    rows: int
+    columns: int
+    side: int
 
 
 def covered_cells(reached: BoolArray, radius: float) -> BoolArray:
@@ -86,15 +130,10 @@ def boundary(reached: BoolArray, radius: float) -> Arcs:
     sides of its direction, more than the 45° that are needed when 2ρ² > 1. Where the lattice is
     coarser than that, every node counts as exposed.
     """
-    iy, ix = np.nonzero(_exposed(reached) if 2 * radius * radius > 1 + TIE else reached)
-    side = max(8, math.ceil(radius / 2))
-    n_buckets = (reached.shape[0] // side + 1, reached.shape[1] // side + 1)
-    bucket = iy // side * n_buckets[1] + ix // side
-    counts = np.bincount(bucket, minlength=n_buckets[0] * n_buckets[1])
-    first = np.concatenate(([0], np.cumsum(counts)))
-    order = np.argsort(bucket, kind="stable")
-    table = _uncovered(reached, iy[order], ix[order], first, n_buckets, side, radius)
-    return _linked(table[:, :2].astype(np.int64), table[:, 2:4], table[:, 4:6], table[:, 6])
+    is_fine = 2 * radius * radius > 1 + TIE
+    exposed = _sorted(_exposed(reached) if is_fine else reached, math.ceil(radius))
+    nodes, begins, ends, spans_rad = _uncovered(reached, exposed, radius)
+    return _linked(nodes, begins, ends, spans_rad)
 
 
 def _exposed(reached: BoolArray) -> BoolArray:
@@ -102,6 +141,16 @@ def _exposed(reached: BoolArray) -> BoolArray:
     around = np.pad(reached, 1)
     inner = around[2:, 1:-1] & around[:-2, 1:-1] & around[1:-1, 2:] & around[1:-1, :-2]
     return reached & ~inner
+
+
+def _sorted(nodes: BoolArray, side: int) -> Buckets:
+    """The nodes of a raster in squares of a side."""
+    rows, columns = (size // side + 1 for size in nodes.shape)
+    y, x = np.nonzero(nodes)
+    square = y // side * columns + x // side
+    order = np.argsort(square, kind="stable")
+    counts = np.bincount(square, minlength=rows * columns)
+    return Buckets(x[order], y[order], np.append(0, np.cumsum(counts)), rows, columns, side)
 
 
 def _linked(nodes: IntArray, begins: FloatArray, ends: FloatArray, spans_rad: FloatArray) -> Arcs:
@@ -139,7 +188,7 @@ def _welded(ends: FloatArray) -> tuple[FloatArray, IntArray]:
 
 
 @numba.njit(nogil=True, cache=True)
-def _cover(reached, half_widths, covered):  # type: ignore[no-untyped-def]
+def _cover(reached: BoolArray, half_widths: IntArray, covered: BoolArray) -> None:
     """Set the cells that lie within half_widths[d] columns of a reached node d rows away.
 
     Runs of reached nodes, widened, count +1 where they begin and -1 past their end; what the
@@ -162,7 +211,7 @@ def _cover(reached, half_widths, covered):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True)
-def _runs(reached):  # type: ignore[no-untyped-def]
+def _runs(reached: BoolArray) -> tuple[IntArray, IntArray, IntArray]:
     """Runs of reached nodes: those of row iy are first[iy]:first[iy + 1], each begin:end."""
     n_rows, n_columns = reached.shape
     first = np.zeros(n_rows + 1, dtype=np.int64)
@@ -180,54 +229,83 @@ def _runs(reached):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True)
-def _uncovered(reached, iy, ix, first, n_buckets, side, radius):  # type: ignore[no-untyped-def]
+def _uncovered(
+    reached: BoolArray, exposed: Buckets, radius: float
+) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
     """The arcs that no other disc covers, unordered.
 
-    Args:
-        reached: Shape (n_rows, n_columns).
-        iy: Rows of the exposed nodes, bucket after bucket.
-        ix: Their columns.
-        first: Where each bucket of side × side nodes begins in iy and ix.
-        n_buckets: Buckets in y and in x.
-        side: Of a bucket, in steps.
-        radius: ρ.
-
     Returns:
-        Shape (n, 7): x and y of the node, of the arc's begin, of its end; its angle.
+        The arcs' nodes, begins and ends, shape (n, 2) each, and their angles, shape (n,).
     """
-    arcs = [(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0) for _ in range(0)]
-    for k in range(iy.size):
-        x, y = ix[k], iy[k]
-        gaps = [(-math.pi, math.pi, 0, 0, 0, 0)]
-        for dx, dy in ((1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)):
-            inside = 0 <= y + dy < reached.shape[0] and 0 <= x + dx < reached.shape[1]
-            if inside and reached[y + dy, x + dx]:
-                gaps = _cut(gaps, dx, dy, radius)
-        for middle_x, middle_y, reach in _windows(gaps, radius):
-            low, high = _clipped(y + middle_y, reach, side, n_buckets[0])
-            left, right = _clipped(x + middle_x, reach, side, n_buckets[1])
-            for row in range(low, high):
-                begin, end = row * n_buckets[1] + left, row * n_buckets[1] + right
-                for j in range(first[begin], first[end]):
-                    dx, dy = ix[j] - x, iy[j] - y
-                    if (dx - middle_x) ** 2 + (dy - middle_y) ** 2 <= reach * reach:
-                        gaps = _cut(gaps, dx, dy, radius)
-        for gap in gaps:
+    arcs = [Arc((0, 0), (0.0, 0.0), (0.0, 0.0), 0.0) for _ in range(0)]
+    for k in range(exposed.x.size):
+        x, y = exposed.x[k], exposed.y[k]
+        gaps = _gaps_of_neighbours(reached, x, y, radius)
+        for gap in _gaps_of_exposed(gaps, exposed, x, y, radius):
             _append_arcs(arcs, x, y, gap, radius)
-    out = np.empty((len(arcs), 7))
-    for k in range(len(arcs)):
-        for column in range(7):
-            out[k, column] = arcs[k][column]
-    return out
+    n = len(arcs)
+    nodes, spans_rad = np.empty((n, 2), dtype=np.int64), np.empty(n)
+    begins, ends = np.empty((n, 2)), np.empty((n, 2))
+    for k, arc in enumerate(arcs):
+        nodes[k] = arc.node
+        begins[k] = arc.begin
+        ends[k] = arc.end
+        spans_rad[k] = arc.span_rad
+    return nodes, begins, ends, spans_rad
 
 
 @numba.njit(nogil=True, cache=True)
-def _cut(gaps, dx, dy, radius):  # type: ignore[no-untyped-def]
-    """The gaps in the cover of a circle, less what the open disc at (dx, dy) covers.
+def _gaps_of_neighbours(reached: BoolArray, x: int, y: int, radius: float) -> list[Gap]:
+    """What the 8 neighbours leave of the circle about (x, y).
 
-    A gap is (begin, end, opener's dx, dy, closer's dx, dy), angles in rad, begin < end; (0, 0)
-    as opener and closer says that nothing covers the circle yet. A disc that only touches covers
-    nothing and parts the gap it touches.
+    The 4 would do; with the diagonal ones less is left to look for.
+    """
+    n_rows, n_columns = reached.shape
+    gaps = [Gap(-math.pi, math.pi, (0, 0), (0, 0))]
+    for iy in range(max(0, y - 1), min(n_rows, y + 2)):
+        for ix in range(max(0, x - 1), min(n_columns, x + 2)):
+            if reached[iy, ix]:
+                gaps = _cut(gaps, ix - x, iy - y, radius)
+    return gaps
+
+
+@numba.njit(nogil=True, cache=True)
+def _gaps_of_exposed(gaps: list[Gap], exposed: Buckets, x: int, y: int, radius: float) -> list[Gap]:
+    """What the exposed nodes leave of the gaps in the circle about (x, y).
+
+    A disc meets a gap when its centre is within ρ of some point of it, so within
+    ρ + 2ρ·sin(angle / 4) of its middle. For the gap of a straight wall that is little over ρ,
+    and hardly any node that is not a neighbour comes so close.
+    """
+    side = exposed.side
+    left = gaps
+    for gap in gaps:
+        middle_rad = (gap.begin_rad + gap.end_rad) / 2
+        middle_x, middle_y = radius * math.cos(middle_rad), radius * math.sin(middle_rad)
+        # where discs touch, the centre of one lies on the rim of this reach
+        reach = radius * (1 + 2 * math.sin((gap.end_rad - gap.begin_rad) / 4)) * (1 + TIE)
+        low, high = _squares(y + middle_y, reach, side, exposed.rows)
+        begin, end = _squares(x + middle_x, reach, side, exposed.columns)
+        for row in range(low * exposed.columns, high * exposed.columns, exposed.columns):
+            for k in range(exposed.first[row + begin], exposed.first[row + end]):
+                dx, dy = exposed.x[k] - x, exposed.y[k] - y
+                if (dx - middle_x) ** 2 + (dy - middle_y) ** 2 <= reach * reach:
+                    left = _cut(left, dx, dy, radius)
+    return left
+
+
+@numba.njit(nogil=True, cache=True)
+def _squares(middle: float, reach: float, side: int, n_squares: int) -> tuple[int, int]:
+    """The squares, from the first up to, not including, the last, within reach of a coordinate."""
+    first = max(0, math.floor(middle - reach) // side)
+    return first, max(first, min(n_squares, math.ceil(middle + reach) // side + 1))
+
+
+@numba.njit(nogil=True, cache=True)
+def _cut(gaps: list[Gap], dx: int, dy: int, radius: float) -> list[Gap]:
+    """The gaps in a circle less what the open disc at (dx, dy) from its node covers.
+
+    A disc that only touches covers nothing, but parts the gap at the point it touches.
     """
     square = dx * dx + dy * dy
     reach = 4 * radius * radius
@@ -238,82 +316,60 @@ def _cut(gaps, dx, dy, radius):  # type: ignore[no-untyped-def]
     if not _meets(gaps, covers_rad, 2 * half_rad):
         return gaps
     kept = gaps[:0]
-    for begin, end, opener_dx, opener_dy, closer_dx, closer_dy in gaps:
-        enters = begin + (covers_rad - begin) % TURN
-        leaves = enters + 2 * half_rad
-        if opener_dx == 0 and opener_dy == 0:
-            kept.append((leaves, enters + TURN, dx, dy, dx, dy))
+    for gap in gaps:
+        enters_rad = gap.begin_rad + (covers_rad - gap.begin_rad) % TURN
+        leaves_rad = enters_rad + 2 * half_rad
+        if gap.opener == (0, 0):
+            kept.append(Gap(leaves_rad, enters_rad + TURN, (dx, dy), (dx, dy)))
             continue
-        if enters < end and leaves < end:
-            kept.append((leaves, end, dx, dy, closer_dx, closer_dy))
-        # the end of the disc's interval may come round to the gap's begin
-        if leaves - TURN > begin:
-            begin, opener_dx, opener_dy = leaves - TURN, dx, dy
-        if enters < end:
-            end, closer_dx, closer_dy = enters, dx, dy
-        if begin < end:
-            kept.append((begin, end, opener_dx, opener_dy, closer_dx, closer_dy))
+        if leaves_rad < gap.end_rad:
+            kept.append(Gap(leaves_rad, gap.end_rad, (dx, dy), gap.closer))
+        begin_rad, opener = gap.begin_rad, gap.opener
+        # the end of what the disc covers may come round to the gap's begin
+        if leaves_rad - TURN > begin_rad:
+            begin_rad, opener = leaves_rad - TURN, (dx, dy)
+        end_rad, closer = gap.end_rad, gap.closer
+        if enters_rad < end_rad:
+            end_rad, closer = enters_rad, (dx, dy)
+        if begin_rad < end_rad:
+            kept.append(Gap(begin_rad, end_rad, opener, closer))
     return kept
 
 
 @numba.njit(nogil=True, cache=True)
-def _meets(gaps, covers_rad, width_rad):  # type: ignore[no-untyped-def]
+def _meets(gaps: list[Gap], covers_rad: float, width_rad: float) -> bool:
     """Whether an interval of directions meets a gap: most do not, and need no new list."""
     for gap in gaps:
-        enters = (covers_rad - gap[0]) % TURN
-        if enters < gap[1] - gap[0] or enters + width_rad > TURN:
+        enters_rad = (covers_rad - gap.begin_rad) % TURN
+        if enters_rad < gap.end_rad - gap.begin_rad or enters_rad + width_rad > TURN:
             return True
     return False
 
 
 @numba.njit(nogil=True, cache=True)
-def _windows(gaps, radius):  # type: ignore[no-untyped-def]
-    """A disc (x, y, radius) for each gap, from the node: the nodes whose discs meet the gap.
-
-    A disc meets a gap when its centre is within ρ of some point of it, so within
-    ρ + 2ρ·sin(angle / 4) of its middle. For the gap of a straight wall that is little over ρ,
-    and hardly any node that is not a neighbour comes so close.
-    """
-    windows = [(0.0, 0.0, 0.0) for _ in range(0)]
-    for begin, end, _, _, _, _ in gaps:
-        middle_rad = (begin + end) / 2
-        reach = radius + 2 * radius * math.sin((end - begin) / 4)
-        x, y = radius * math.cos(middle_rad), radius * math.sin(middle_rad)
-        # at a touch the centre lies on the rim of this disc
-        windows.append((x, y, reach * (1 + TIE)))
-    return windows
-
-
-@numba.njit(nogil=True, cache=True)
-def _clipped(middle, reach, side, n_buckets):  # type: ignore[no-untyped-def]
-    """The buckets, from the first up to, not including, the last, within reach of a coordinate."""
-    first = max(0, math.floor(middle - reach) // side)
-    return first, max(first, min(n_buckets, math.ceil(middle + reach) // side + 1))
-
-
-@numba.njit(nogil=True, cache=True)
-def _append_arcs(arcs, x, y, gap, radius):  # type: ignore[no-untyped-def]
-    """Append a gap as an arc, or as two where it is more than half a circle."""
-    begin, end, opener_dx, opener_dy, closer_dx, closer_dy = gap
-    begin_x, begin_y = _crossing(opener_dx, opener_dy, 1, radius)
-    end_x, end_y = _crossing(closer_dx, closer_dy, -1, radius)
-    span = end - begin
-    if span <= math.pi:
-        arcs.append((x, y, x + begin_x, y + begin_y, x + end_x, y + end_y, span))
+def _append_arcs(arcs: list[Arc], x: int, y: int, gap: Gap, radius: float) -> None:
+    """Append a gap in the circle about (x, y) as an arc, or as two if over half a circle."""
+    begin_x, begin_y = _crossing(gap.opener, 1, radius)
+    end_x, end_y = _crossing(gap.closer, -1, radius)
+    begin, end = (x + begin_x, y + begin_y), (x + end_x, y + end_y)
+    span_rad = gap.end_rad - gap.begin_rad
+    if span_rad <= math.pi:
+        arcs.append(Arc((x, y), begin, end, span_rad))
         return
-    middle_rad = (begin + end) / 2
-    middle_x, middle_y = x + radius * math.cos(middle_rad), y + radius * math.sin(middle_rad)
-    arcs.append((x, y, x + begin_x, y + begin_y, middle_x, middle_y, span / 2))
-    arcs.append((x, y, middle_x, middle_y, x + end_x, y + end_y, span / 2))
+    middle_rad = gap.begin_rad + span_rad / 2
+    middle = (x + radius * math.cos(middle_rad), y + radius * math.sin(middle_rad))
+    arcs.append(Arc((x, y), begin, middle, span_rad / 2))
+    arcs.append(Arc((x, y), middle, end, span_rad / 2))
 
 
 @numba.njit(nogil=True, cache=True)
-def _crossing(dx, dy, side, radius):  # type: ignore[no-untyped-def]
-    """Where the circle about (dx, dy) meets that about (0, 0): on its left for side 1, else -1.
+def _crossing(other: Offset, side: int, radius: float) -> tuple[float, float]:
+    """Where the circle about another node meets that about (0, 0): to its left for side 1, else -1.
 
     From the integers, not from the angle: so the crossings along a straight wall lie on a
-    straight line to the last bit.
+    straight line to the last bit. A circle that meets no other begins and ends at its left.
     """
+    dx, dy = other
     if dx == 0 and dy == 0:
         return -radius, 0.0
     across = side * math.sqrt(max(0.0, radius * radius / (dx * dx + dy * dy) - 0.25))
@@ -321,7 +377,9 @@ def _crossing(dx, dy, side, radius):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True)
-def _simple_loops(successors, labels, n_labels):  # type: ignore[no-untyped-def]
+def _simple_loops(
+    successors: IntArray, labels: IntArray, n_labels: int
+) -> tuple[IntArray, IntArray]:
     """The arcs loop after loop, and where each loop begins; no loop has a label twice.
 
     Walks along the arcs and keeps the way since the start. Where the walk comes to a point that
