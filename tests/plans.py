@@ -22,11 +22,7 @@ DISC_MM: Final = PROTOTYPE.disc_radius_mm
 CORNER_MM2: Final = (1 - math.pi / 4) * DISC_MM**2
 """What a round disc leaves in a square corner."""
 
-AHEAD_MM: Final = (
-    PROTOTYPE.arm_length_mm + PROTOTYPE.pivot_offset_mm - PROTOTYPE.vehicle_length_mm / 2
-)
-"""From the disc centre to the vehicle's near edge, arm straight: how deep the disc can be pushed
-into a slot that the vehicle does not fit into. 995 + 142 - 437.5 = 699.5."""
+Point: TypeAlias = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,17 +32,19 @@ class Case:
     Attributes:
         plan: The plan, in millimetres.
         start_mm: Disc centre to start from.
-        disc_area_mm2: Area of the disc-connected set, in closed form.
-        pose_area_mm2: Area of the pose-connected set, or None where it has no closed form.
+        disc_area_mm2: Area of the disc-connected set, or None where it has no closed form.
+        pose_area_mm2: Area of the pose-connected set, likewise.
         outline_mm: Length of that area's boundary, rounded up; times the lattice step it bounds
             what a lattice may miss.
+        beyond_mm: A free place that no motion from the start lets the disc cover, or None.
     """
 
     plan: FloorPlan
-    start_mm: tuple[float, float]
-    disc_area_mm2: float
+    start_mm: Point
+    disc_area_mm2: float | None
     pose_area_mm2: float | None
     outline_mm: float
+    beyond_mm: Point | None = None
 
 
 def room_mm2(width_mm: float, height_mm: float) -> float:
@@ -150,7 +148,7 @@ def touching_corner() -> Case:
     """
     plan = _room_with(6000, 6000, box(0, 2500, 3000, 3000), box(3000, 3000, 6000, 3500))
     area_mm2 = 6000 * 2500 + 3000 * 500 - 5 * CORNER_MM2
-    return Case(plan, (1500.0, 1200.0), area_mm2, area_mm2, 18_000.0)
+    return Case(plan, (1500.0, 1200.0), area_mm2, area_mm2, 18_000.0, beyond_mm=(3000.0, 5000.0))
 
 
 def corridor_exactly_as_wide_as_disc() -> Case:
@@ -166,22 +164,24 @@ def corridor_exactly_as_wide_as_disc() -> Case:
     """
     plan = FloorPlan(_two_rooms_floor(1655, 2355, between_mm=3000))
     area_mm2 = room_mm2(4000, 4000) + math.pi * DISC_MM**2 / 2
-    return Case(plan, (2000.0, 2000.0), area_mm2, area_mm2, 18_000.0)
+    return Case(plan, (2000.0, 2000.0), area_mm2, area_mm2, 18_000.0, beyond_mm=(5500.0, 2005.0))
 
 
 def corridor_exactly_as_wide_as_vehicle() -> Case:
     """
     ╭──────────╮          ╭──────────╮
-    │          └──────────┘ 2420     │   830 mm wide: the vehicle would touch both sides, so only
-    │    ×                           │   the disc is pushed in, 699.5 mm deep, |y - 2005| ≤ 65
+    │          └──────────┘ 2420     │   830 mm wide: the vehicle, straight on, would touch both
+    │    ×          ?                │   sides, so it stays out of it but for a corner
     │          ┌──────────┐ 1590     │
     ╰──────────╯          ╰──────────╯
     0        4000       7000       11000
+
+    The pivot S lies in the vehicle, at least 295 mm from its rim, and stays in the room; so the
+    disc reaches less than 995 + 350 mm into the corridor, and not to its middle. How deep it
+    gets depends on how far a turned vehicle's corner fits into the mouth: no closed form.
     """
     plan = FloorPlan(_two_rooms_floor(1590, 2420, between_mm=3000))
-    slot_mm2 = 830 * AHEAD_MM + (830 - 2 * DISC_MM) * DISC_MM + math.pi * DISC_MM**2 / 2
-    area_mm2 = room_mm2(4000, 4000) + slot_mm2
-    return Case(plan, (2000.0, 2000.0), area_mm2, area_mm2, 20_000.0)
+    return Case(plan, (2000.0, 2000.0), None, None, 20_000.0, beyond_mm=(5500.0, 2005.0))
 
 
 def two_rooms(opening_mm: float) -> Case:
@@ -198,7 +198,14 @@ def two_rooms(opening_mm: float) -> Case:
     plan = FloorPlan(_two_rooms_floor(2000 - opening_mm / 2, 2000 + opening_mm / 2, between_mm=200))
     area_mm2 = 2 * room_mm2(4000, 4000) + 200 * opening_mm
     passable = opening_mm > PROTOTYPE.vehicle_width_mm
-    return Case(plan, (2000.0, 2000.0), area_mm2, area_mm2 if passable else None, 32_000.0)
+    return Case(
+        plan,
+        (2000.0, 2000.0),
+        area_mm2,
+        area_mm2 if passable else None,
+        32_000.0,
+        beyond_mm=None if passable else (6200.0, 2000.0),
+    )
 
 
 CASES: Final[dict[str, Callable[[], Case]]] = {
@@ -241,8 +248,6 @@ def _two_rooms_floor(low_mm: float, high_mm: float, *, between_mm: float) -> Pol
 # quarters, mirroring and shifting by whole cells are exact in double precision.
 
 GRAIN_MM: Final = 0.125
-
-Point: TypeAlias = tuple[float, float]
 
 
 def random_plan(
