@@ -307,11 +307,10 @@ def _cut(gaps: list[Gap], dx: int, dy: int, radius: float) -> list[Gap]:
 
     A disc that only touches covers nothing, but parts the gap at the point it touches.
     """
-    square = dx * dx + dy * dy
-    reach = 4 * radius * radius
-    if square == 0 or square > reach * (1 + TIE):
+    spread = _spread(dx, dy, radius)
+    if spread < 0:
         return gaps
-    half_rad = math.acos(math.sqrt(square / reach)) if square < reach * (1 - TIE) else 0.0
+    half_rad = math.atan(spread)
     covers_rad = math.atan2(dy, dx) - half_rad
     if not _meets(gaps, covers_rad, 2 * half_rad):
         return gaps
@@ -372,8 +371,23 @@ def _crossing(other: Offset, side: int, radius: float) -> tuple[float, float]:
     dx, dy = other
     if dx == 0 and dy == 0:
         return -radius, 0.0
-    across = side * math.sqrt(max(0.0, radius * radius / (dx * dx + dy * dy) - 0.25))
-    return dx / 2 - dy * across, dy / 2 + dx * across
+    across = side * _spread(dx, dy, radius)
+    return (dx - dy * across) / 2, (dy + dx * across) / 2
+
+
+@numba.njit(nogil=True, cache=True)
+def _spread(dx: int, dy: int, radius: float) -> float:
+    """Tangent of half the angle over which the disc at (dx, dy) covers the circle at (0, 0).
+
+    0 when they touch, below 0 when they do not meet or are the same.
+    """
+    square = dx * dx + dy * dy
+    if square == 0:
+        return -1.0
+    excess = 4 * radius * radius / square - 1
+    if abs(excess) <= TIE:
+        return 0.0
+    return math.sqrt(excess) if excess > 0 else -1.0
 
 
 @numba.njit(nogil=True, cache=True)
