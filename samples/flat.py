@@ -8,10 +8,11 @@
         │             ↕        living       ╭──┘
         │             │          ●        ╭╯
     0.0 └─────────────┴────────────────────╯
-        0            4.4        6.3           11.0
+        0            4.4      6.3             11.0
 
 Outer walls are solid hatches with outlines, one of them curved; inner walls are pairs of lines,
 open where they meet. There is no layer for the floor: it has to be inferred from the walls.
+Lengths are in mm.
 """
 
 from collections.abc import Sequence
@@ -132,7 +133,7 @@ def _curved_wall(msp: BaseLayout) -> None:
 
 def _tiles(msp: BaseLayout) -> None:
     """Tiles of 300 mm on the bath's floor."""
-    tiles = msp.add_hatch(dxfattribs={"layer": "A-FLOR-PATT"})
+    tiles = msp.add_hatch(pen.BY_LAYER, dxfattribs={"layer": "A-FLOR-PATT"})
     # the pattern's own distance is 3.175 mm
     tiles.set_pattern_fill("NET", scale=300 / 3.175)
     bath = ((4020, 4520), (6300, 4520), (6300, 7760), (4020, 7760))

@@ -20,6 +20,9 @@ METRE: Final = 6
 SEMICIRCLE: Final = 1.0
 """Bulge of a half circle: tan(180° / 4)."""
 
+BY_LAYER: Final = 256
+"""The colour number that stands for the layer's colour."""
+
 DIMENSION_STYLE: Final = "SAMPLE"
 
 QUARTER_CIRCLE: Final = math.tan(math.pi / 8)
@@ -90,7 +93,7 @@ def lines(layout: BaseLayout, layer: str, pairs: Iterable[tuple[Point, Point]]) 
 
 def solid(layout: BaseLayout, layer: str, *boundaries: Sequence[tuple[float, ...]]) -> None:
     """A solid hatch; the first boundary is the outer one, the others are holes."""
-    hatch = layout.add_hatch(dxfattribs={"layer": layer})
+    hatch = layout.add_hatch(BY_LAYER, dxfattribs={"layer": layer})
     for boundary in boundaries:
         hatch.paths.add_polyline_path(boundary, is_closed=True)
 
