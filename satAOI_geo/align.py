@@ -1,4 +1,4 @@
-"""The direction of the walls: the lattice is laid along it, so that turning a plan changes nothing."""
+"""The direction of the walls: a lattice laid along it sees a turned plan as it saw the plan."""
 
 import math
 from typing import Final
@@ -9,7 +9,7 @@ from shapely.geometry import LineString
 from satAOI_geo.plan import Circle, FloatArray, FloorPlan, Kind, Shape, polygons_in
 
 WINDOW_RAD: Final = math.radians(0.2)
-"""Edges this close in direction count as parallel: more than drawings err, less than walls differ."""
+"""Edges this close in direction count as parallel: drawings err less, walls differ more."""
 
 LEVEL_RAD: Final = 1e-9
 """A turn below this is rounding: it moves a point 100 m away by a tenth of a micrometre."""
@@ -21,7 +21,8 @@ def wall_direction_rad(plan: FloorPlan) -> float:
     """The direction that most of the plan's wall length runs in, modulo a quarter turn.
 
     Walls count; where a plan has none, the floor's edge and all obstacles do. The answer is the
-    mean direction, weighted by length, of the window of `WINDOW_RAD` that holds the most length.
+    median direction, weighted by length, of the window of `WINDOW_RAD` that holds the most
+    length: a median is the direction of a drawn edge, which a few crooked ones do not shift.
 
     Returns:
         Between -π/4 and π/4; 0 for a plan that lies square in its axes, and for one without a
@@ -36,13 +37,13 @@ def wall_direction_rad(plan: FloorPlan) -> float:
     edges_mm, lengths_mm = edges_mm[lengths_mm > 0], lengths_mm[lengths_mm > 0]
     if not lengths_mm.size:
         return 0.0
-    mean_rad = _densest_mean_rad(np.arctan2(edges_mm[:, 1], edges_mm[:, 0]), lengths_mm)
-    turn_rad = mean_rad - QUARTER_RAD * round(mean_rad / QUARTER_RAD)
+    densest_rad = _densest_rad(np.arctan2(edges_mm[:, 1], edges_mm[:, 0]), lengths_mm)
+    turn_rad = densest_rad - QUARTER_RAD * round(densest_rad / QUARTER_RAD)
     return 0.0 if abs(turn_rad) < LEVEL_RAD else turn_rad
 
 
-def _densest_mean_rad(angles_rad: FloatArray, lengths_mm: FloatArray) -> float:
-    """The mean direction of the window that holds the most length, modulo a quarter turn."""
+def _densest_rad(angles_rad: FloatArray, lengths_mm: FloatArray) -> float:
+    """The median direction of the window that holds the most length, modulo a quarter turn."""
     folded_rad = np.mod(angles_rad, QUARTER_RAD)
     order = np.argsort(folded_rad, kind="stable")
     # twice around, so that a window may run over the end of the quarter
@@ -54,10 +55,8 @@ def _densest_mean_rad(angles_rad: FloatArray, lengths_mm: FloatArray) -> float:
     held_mm = reached_mm[ends] - reached_mm[begins]
     # sums differ in their last bits with the order of the edges: such windows are equal
     best = int(np.flatnonzero(held_mm >= held_mm.max() * (1 - 1e-9))[0])
-    window = slice(best, int(ends[best]))
-    offsets_rad = around_rad[window] - around_rad[best]
-    mean_rad = around_rad[best] + np.average(offsets_rad, weights=weights_mm[window])
-    return float(mean_rad)
+    half_mm = reached_mm[best] + held_mm[best] / 2
+    return float(around_rad[np.searchsorted(reached_mm[1:], half_mm)])
 
 
 def _edges_mm(shape: Shape) -> FloatArray:

@@ -135,7 +135,6 @@ class Outline:
             [hole.points_mm(sagitta_mm) for hole in self.holes],
         )
 
-
     def equal_area_polygon(self, sagitta_mm: float = 0.01) -> Polygon:
         """The part with corners set about its arcs so that the polygon has the part's area."""
         return Polygon(

@@ -4,6 +4,7 @@ Data goes to standard output, talk to standard error. What a command needs is im
 runs, so that `--help` answers at once.
 """
 
+import math
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -63,9 +64,11 @@ class DefaultRun(click.RichGroup):
     """A group whose command `run` may be left out: `satAOI-geo PLAN` is `satAOI-geo run PLAN`."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Put `run` in front of arguments that name no command."""
+        """Put `run` in front of arguments that name no command; without arguments, show the help."""
         own_words = {*self.commands, *ctx.help_option_names, "--version"}
-        if args and args[0] not in own_words:
+        if not args:
+            args = ["--help"]
+        elif args[0] not in own_words:
             args = ["run", *args]
         return super().parse_args(ctx, args)
 
@@ -82,6 +85,17 @@ def point(
         message = f"'{text}' is not two numbers with a comma, as in 3200,1500.5"
         raise click.BadParameter(message, ctx=context, param=parameter) from error
     return x, y
+
+
+def direction(context: click.Context, parameter: click.Parameter, text: str) -> float | None:
+    """The lattice's direction in degrees; None to find it."""
+    if text == "auto":
+        return None
+    try:
+        return 0.0 if text == "none" else float(text)
+    except ValueError as error:
+        message = f"'{text}' is neither an angle in degrees nor auto nor none"
+        raise click.BadParameter(message, ctx=context, param=parameter) from error
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -195,6 +209,15 @@ def commands() -> None:
     help="Directions of arm and vehicle in a full turn, a multiple of 4, e.g. --directions 36",
 )
 @click.option(
+    "--align",
+    metavar="DEG|auto|none",
+    default="auto",
+    show_default=True,
+    callback=direction,
+    help="Direction of the disc positions' rows in the drawing: that of most of the walls, along "
+    "the drawing's axes, or an angle in degrees, e.g. --align 33.3",
+)
+@click.option(
     "--units",
     metavar="UNIT",
     type=click.Choice(list(MM_PER_UNIT)),
@@ -235,6 +258,7 @@ def run(  # noqa: PLR0913  one parameter an option
     clearance: float,
     step: float,
     directions: int,
+    align: float | None,
     units: str | None,
     layers: Path | None,
     engine: Literal["fast", "reference"],
@@ -256,21 +280,23 @@ def run(  # noqa: PLR0913  one parameter an option
     chosen_robot = robot_from(robot)
     announce_compilation(quiet=quiet)
     from satAOI_geo.pipeline import area_of_interest
+    from satAOI_geo.start import StartMark
 
     floor_plan = read_plan(plan, ReadOptions(units=units, layers=layers))
-    start_mm = None
+    mark = None
     if start is not None:
-        x_mm, y_mm = floor_plan.frame.to_local_mm(start)
-        start_mm = float(x_mm), float(y_mm)
+        x_mm, y_mm = floor_plan.frame.to_local_mm(start).tolist()
+        mark = StartMark((x_mm, y_mm))
     with progress(quiet=quiet) as told:
         result = area_of_interest(
             floor_plan,
             chosen_robot,
-            start_mm=start_mm,
+            start=mark,
             connectivity=connectivity,
             step_mm=step,
             n_directions=directions,
             clearance_mm=clearance,
+            align_rad=None if align is None else math.radians(align),
             engine=engine,
             exact_outline=exact_outline,
             progress=told,
@@ -361,7 +387,7 @@ def demo(context: click.Context, output: Path | None) -> int:
     """
     from importlib.resources import as_file, files
 
-    with as_file(files("satAOI_adapters") / "demo" / "hall.dxf") as plan:
+    with as_file(files("satAOI_adapters") / "demo" / "hall_medium.dxf") as plan:
         code: int = context.invoke(run, plan=plan, output=output)
     return code
 

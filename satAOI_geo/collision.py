@@ -108,7 +108,9 @@ class Reference:
 
 
 def _core(part: Part) -> BaseGeometry:
-    """The polygon or segment that a part reaches out from."""
+    """The point, segment or polygon that a part reaches out from."""
+    if len(part.corners_mm) == 1:
+        return Point(part.corners_mm[0])
     return (LineString if len(part.corners_mm) == 2 else Polygon)(part.corners_mm)
 
 

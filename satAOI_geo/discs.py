@@ -51,15 +51,6 @@ class Gap(NamedTuple):
     closer: Offset
 
 
-class Arc(NamedTuple):
-    """An arc of the boundary: the node it runs about, its ends, its angle."""
-
-    node: Offset
-    begin: tuple[float, float]
-    end: tuple[float, float]
-    span_rad: float
-
-
 class Buckets(NamedTuple):
     """Exposed nodes, sorted into squares so that those near a place are found quickly.
 
@@ -132,8 +123,8 @@ def boundary(reached: BoolArray, radius: float) -> Arcs:
     """
     is_fine = 2 * radius * radius > 1 + TIE
     exposed = _sorted(_exposed(reached) if is_fine else reached, math.ceil(radius))
-    nodes, begins, ends, spans_rad = _uncovered(reached, exposed, radius)
-    return _linked(nodes, begins, ends, spans_rad)
+    table = _uncovered(reached, exposed, radius).reshape(-1, 7)
+    return _linked(table[:, :2].astype(np.int64), table[:, 2:4], table[:, 4:6], table[:, 6])
 
 
 def _exposed(reached: BoolArray) -> BoolArray:
@@ -229,29 +220,18 @@ def _runs(reached: BoolArray) -> tuple[IntArray, IntArray, IntArray]:
 
 
 @numba.njit(nogil=True, cache=True)
-def _uncovered(
-    reached: BoolArray, exposed: Buckets, radius: float
-) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
-    """The arcs that no other disc covers, unordered.
+def _uncovered(reached: BoolArray, exposed: Buckets, radius: float) -> FloatArray:
+    """The arcs that no other disc covers, unordered, as 7 numbers each in one flat array.
 
-    Returns:
-        The arcs' nodes, begins and ends, shape (n, 2) each, and their angles, shape (n,).
+    They are x and y of the node, of the arc's begin and of its end, and the arc's angle.
     """
-    arcs = [Arc((0, 0), (0.0, 0.0), (0.0, 0.0), 0.0) for _ in range(0)]
+    numbers = [0.0 for _ in range(0)]
     for k in range(exposed.x.size):
         x, y = exposed.x[k], exposed.y[k]
         gaps = _gaps_of_neighbours(reached, x, y, radius)
         for gap in _gaps_of_exposed(gaps, exposed, x, y, radius):
-            _append_arcs(arcs, x, y, gap, radius)
-    n = len(arcs)
-    nodes, spans_rad = np.empty((n, 2), dtype=np.int64), np.empty(n)
-    begins, ends = np.empty((n, 2)), np.empty((n, 2))
-    for k, arc in enumerate(arcs):
-        nodes[k] = arc.node
-        begins[k] = arc.begin
-        ends[k] = arc.end
-        spans_rad[k] = arc.span_rad
-    return nodes, begins, ends, spans_rad
+            _append_arcs(numbers, float(x), float(y), gap, radius)
+    return np.array(numbers)
 
 
 @numba.njit(nogil=True, cache=True)
@@ -346,19 +326,18 @@ def _meets(gaps: list[Gap], covers_rad: float, width_rad: float) -> bool:
 
 
 @numba.njit(nogil=True, cache=True)
-def _append_arcs(arcs: list[Arc], x: int, y: int, gap: Gap, radius: float) -> None:
+def _append_arcs(numbers: list[float], x: float, y: float, gap: Gap, radius: float) -> None:
     """Append a gap in the circle about (x, y) as an arc, or as two if over half a circle."""
     begin_x, begin_y = _crossing(gap.opener, 1, radius)
     end_x, end_y = _crossing(gap.closer, -1, radius)
-    begin, end = (x + begin_x, y + begin_y), (x + end_x, y + end_y)
     span_rad = gap.end_rad - gap.begin_rad
     if span_rad <= math.pi:
-        arcs.append(Arc((x, y), begin, end, span_rad))
+        numbers.extend((x, y, x + begin_x, y + begin_y, x + end_x, y + end_y, span_rad))
         return
     middle_rad = gap.begin_rad + span_rad / 2
-    middle = (x + radius * math.cos(middle_rad), y + radius * math.sin(middle_rad))
-    arcs.append(Arc((x, y), begin, middle, span_rad / 2))
-    arcs.append(Arc((x, y), middle, end, span_rad / 2))
+    middle_x, middle_y = x + radius * math.cos(middle_rad), y + radius * math.sin(middle_rad)
+    numbers.extend((x, y, x + begin_x, y + begin_y, middle_x, middle_y, span_rad / 2))
+    numbers.extend((x, y, middle_x, middle_y, x + end_x, y + end_y, span_rad / 2))
 
 
 @numba.njit(nogil=True, cache=True)

@@ -114,9 +114,7 @@ class LimitError(SatAoiError, RuntimeError):
         allowed: What is allowed.
     """
 
-    def __init__(
-        self, message: str, *, limit: str, value: float, allowed: float
-    ) -> None:
+    def __init__(self, message: str, *, limit: str, value: float, allowed: float) -> None:
         super().__init__(message)
         self.limit = limit
         self.value = value

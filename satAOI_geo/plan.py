@@ -240,11 +240,11 @@ def as_region(geometry: BaseGeometry) -> Region:
 
 
 def polygons_in(geometries: Sequence[BaseGeometry]) -> list[Polygon]:
-    """All polygons in a sequence of geometries, collections opened, in order."""
+    """All polygons with an inside in a sequence of geometries, collections opened, in order."""
     found: list[Polygon] = []
     for geometry in geometries:
         if isinstance(geometry, Polygon):
-            found.append(geometry)
+            found.extend([] if geometry.is_empty else [geometry])
         else:
             found.extend(polygons_in(getattr(geometry, "geoms", ())))
     return found

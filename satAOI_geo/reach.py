@@ -12,6 +12,7 @@ not bounded.
 from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Lock
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +23,15 @@ from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.robot import Robot
 from satAOI_geo.runs import Runs, SliceRuns, links, paint, roots, unite
+
+
+class State(NamedTuple):
+    """A node with a pose: row, column, direction number, swing number."""
+
+    iy: int
+    ix: int
+    a1: int
+    swing: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +151,17 @@ class PoseComponents:
         poses = np.ndindex(*self.runs.first.shape[:2])
         found = {self.at(iy, ix, a1, swing) for a1, swing in poses}
         return sorted(label for label in found if label is not None)
+
+    def straightest(self, iy: int, ix: int, label: int) -> State:
+        """The state of a set at one of its nodes whose arm is straightest behind the vehicle."""
+        turns = self.lattice.swings
+        straight_first = sorted(range(len(turns)), key=lambda swing: (abs(turns[swing]), swing))
+        return next(
+            State(iy, ix, a1, swing)
+            for swing in straight_first
+            for a1 in range(self.lattice.n_directions)
+            if self.at(iy, ix, a1, swing) == label
+        )
 
     def runs_of(self, label: int) -> npt.NDArray[np.int64]:
         """The numbers of the runs of one set."""

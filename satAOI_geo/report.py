@@ -2,17 +2,18 @@
 
 import math
 from dataclasses import asdict
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from satAOI_geo.aoi import Aoi
-from satAOI_geo.freespace import FreeSpace
-from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import FloorPlan
+from satAOI_geo.reach import State
+from satAOI_geo.reasons import Patch
 from satAOI_geo.robot import Robot
-from satAOI_geo.start import Start
+from satAOI_geo.search import Search
 from satAOI_geo.units import MM2_PER_M2
+from satAOI_geo.zones import SetDown, Zone
 
 
 class Section(BaseModel):
@@ -50,6 +51,8 @@ class LatticeFigures(Section):
 
     step_mm: float
     origin_mm: tuple[float, float]
+    turn_deg: float
+    turn_source: Literal["walls", "option"]
     shape: tuple[int, int]
     n_directions: int
     n_swings: int
@@ -66,11 +69,18 @@ class FloorFigures(Section):
     n_obstacles: int
 
 
-class StartFigures(Section):
-    """Where the robot is set down; xy in the drawing's axes, node [row, column]."""
+class PoseFigures(Section):
+    """A pose: xy in the drawing's axes, node [row, column], a1 in the drawing's axes, a2."""
 
     xy_mm: tuple[float, float]
     node: tuple[int, int]
+    a1_deg: float
+    a2_deg: float
+
+
+class StartFigures(PoseFigures):
+    """Where the robot is set down, and how many components have a pose at that node."""
+
     source: Literal["option", "drawing", "largest"]
     n_components: int
 
@@ -100,6 +110,37 @@ class AoiFigures(Section):
     n_parts: int
 
 
+class ZoneFigures(Section):
+    """What one set-down can trowel; number 1 is the largest."""
+
+    number: int
+    area_m2: float
+    n_nodes: int
+    set_down: PoseFigures
+
+
+class SetDownFigures(Section):
+    """One of the set-downs that together trowel all that any pose can, in greedy order.
+
+    The gain is what it adds, by the raster; zone is null for one whose area is below 0.5 m².
+    """
+
+    zone: int | None
+    gain_m2: float
+    set_down: PoseFigures
+
+
+class PatchFigures(Section):
+    """Free floor that is not reached; narrow gathers strips narrower than a lattice cell."""
+
+    reason: Literal["disc", "arm", "vehicle", "zone", "path"]
+    area_m2: float
+    label_mm: tuple[float, float]
+    narrow: bool
+    blocker_handle: str
+    blocker_layer: str
+
+
 class FindingFigures(Section):
     """A finding; the position in the drawing's axes."""
 
@@ -126,24 +167,26 @@ class Report(Section):
     disc_connected: ConnectedFigures
     pose_connected: ConnectedFigures
     aoi: AoiFigures
+    zones: list[ZoneFigures]
+    set_downs: list[SetDownFigures]
+    unreached: list[PatchFigures]
     findings: list[FindingFigures]
     timing_s: dict[str, float]
 
 
 def report_of(
-    plan: FloorPlan,
-    robot: Robot,
-    lattice: Lattice,
+    found: Search,
     *,
-    clearance_mm: float,
-    connectivity: Literal["disc", "pose"],
-    start: Start,
-    free: FreeSpace,
     n_nodes: dict[str, int],
     areas: dict[str, Aoi],
+    zones: tuple[Zone, ...],
+    set_downs: tuple[SetDown, ...],
+    patches: tuple[Patch, ...],
     timing_s: dict[str, float],
 ) -> Report:
     """Gather the figures of a run; n_nodes and areas are given for `disc` and `pose`."""
+    plan, lattice, settings = found.plan, found.lattice, found.settings
+    connectivity = settings.connectivity
     connected = {
         rule: ConnectedFigures(
             n_nodes=n_nodes[rule],
@@ -153,6 +196,7 @@ def report_of(
         for rule, aoi in areas.items()
     }
     floor = _floor_figures(plan)
+    numbers = {zone.label: number for number, zone in enumerate(zones, start=1)}
     return Report(
         schema="sataoi-report/1",
         input=InputFigures(
@@ -162,32 +206,23 @@ def report_of(
             unit=plan.source.unit,
             unit_source=plan.source.unit_source,
         ),
-        robot=RobotFigures(
-            name=robot.name,
-            vehicle_length_mm=robot.vehicle_length_mm,
-            vehicle_width_mm=robot.vehicle_width_mm,
-            pivot_offset_mm=robot.pivot_offset_mm,
-            arm_length_mm=robot.arm_length_mm,
-            disc_radius_mm=robot.disc_radius_mm,
-            swing_min_deg=math.degrees(robot.swing_min_rad),
-            swing_max_deg=math.degrees(robot.swing_max_rad),
-            clearance_mm=clearance_mm,
-        ),
+        robot=_robot_figures(found.robot, settings.clearance_mm),
         lattice=LatticeFigures(
             step_mm=lattice.step_mm,
             origin_mm=_in_drawing_mm(plan, lattice.origin_mm),
+            turn_deg=math.degrees(plan.frame.turn_rad),
+            turn_source="walls" if settings.align_rad is None else "option",
             shape=lattice.shape,
             n_directions=lattice.n_directions,
             n_swings=len(lattice.swings),
         ),
         floor=floor,
         start=StartFigures(
-            xy_mm=_in_drawing_mm(plan, (lattice.x_mm(start.node[1]), lattice.y_mm(start.node[0]))),
-            node=start.node,
-            source=start.source,
-            n_components=start.n_components,
+            **_pose_figures(found, found.start.state),
+            source=found.start.source,
+            n_components=found.start.n_components,
         ),
-        free=FreeFigures(n_nodes=int(free.free_nodes().sum()), n_states=free.n_states()),
+        free=FreeFigures(n_nodes=int(found.free.sum()), n_states=found.space.n_states()),
         disc_connected=connected["disc"],
         pose_connected=connected["pose"],
         aoi=AoiFigures(
@@ -197,8 +232,41 @@ def report_of(
             percent_of_free=100 * connected[connectivity].area_m2 / floor.free_area_m2,
             n_parts=len(areas[connectivity].outlines),
         ),
+        zones=[
+            ZoneFigures(
+                number=numbers[zone.label],
+                area_m2=zone.aoi.area_mm2 / MM2_PER_M2,
+                n_nodes=zone.n_nodes,
+                set_down=PoseFigures(**_pose_figures(found, zone.set_down)),
+            )
+            for zone in zones
+        ],
+        set_downs=[
+            SetDownFigures(
+                zone=numbers.get(one.label),
+                gain_m2=one.gain_mm2 / MM2_PER_M2,
+                set_down=PoseFigures(**_pose_figures(found, one.state)),
+            )
+            for one in set_downs
+        ],
+        unreached=[_patch_figures(plan, patch) for patch in patches],
         findings=[FindingFigures(**asdict(finding)) for finding in plan.findings],
         timing_s=timing_s,
+    )
+
+
+def _robot_figures(robot: Robot, clearance_mm: float) -> RobotFigures:
+    """The robot's measures."""
+    return RobotFigures(
+        name=robot.name,
+        vehicle_length_mm=robot.vehicle_length_mm,
+        vehicle_width_mm=robot.vehicle_width_mm,
+        pivot_offset_mm=robot.pivot_offset_mm,
+        arm_length_mm=robot.arm_length_mm,
+        disc_radius_mm=robot.disc_radius_mm,
+        swing_min_deg=math.degrees(robot.swing_min_rad),
+        swing_max_deg=math.degrees(robot.swing_max_rad),
+        clearance_mm=clearance_mm,
     )
 
 
@@ -212,6 +280,31 @@ def _floor_figures(plan: FloorPlan) -> FloorFigures:
         obstacle_percent=100 * obstacle_mm2 / plan.floor.area,
         free_area_m2=plan.free_region().area / MM2_PER_M2,
         n_obstacles=len(plan.obstacles),
+    )
+
+
+def _pose_figures(found: Search, state: State) -> dict[str, Any]:
+    """A state in the drawing's axes."""
+    plan, lattice = found.plan, found.lattice
+    pose = lattice.pose(*state)
+    a1_deg = math.degrees(pose.a1_rad + plan.frame.turn_rad) % 360.0
+    return {
+        "xy_mm": _in_drawing_mm(plan, (pose.x_mm, pose.y_mm)),
+        "node": (state.iy, state.ix),
+        "a1_deg": a1_deg,
+        "a2_deg": math.degrees(pose.a2_rad),
+    }
+
+
+def _patch_figures(plan: FloorPlan, patch: Patch) -> PatchFigures:
+    """A patch with its label in the drawing's axes."""
+    return PatchFigures(
+        reason=patch.reason.value,
+        area_m2=patch.area_mm2 / MM2_PER_M2,
+        label_mm=_in_drawing_mm(plan, patch.label_mm),
+        narrow=patch.narrow,
+        blocker_handle=patch.blocker.handle if patch.blocker else "",
+        blocker_layer=patch.blocker.layer if patch.blocker else "",
     )
 
 

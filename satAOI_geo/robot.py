@@ -55,7 +55,7 @@ class Part:
     """A convex piece of the robot: all points within a radius of a convex polygon.
 
     Attributes:
-        corners_mm: Shape (n, 2), counter-clockwise; two corners make a segment.
+        corners_mm: Shape (n, 2), counter-clockwise; one corner is a point, two are a segment.
         radius_mm: How far the part reaches beyond the polygon.
     """
 
@@ -135,6 +135,10 @@ class Robot:
         vehicle_mm = self.arm_length_mm + abs(self.pivot_offset_mm) + half_diagonal_mm
         return max(vehicle_mm, self.disc_radius_mm)
 
+    def disc(self) -> Part:
+        """The disc alone, its centre D at the origin."""
+        return Part(np.zeros((1, 2)), self.disc_radius_mm)
+
     def capsule(self, arm: FloatArray) -> Part:
         """Arm and disc about D at the origin; `arm` is u(a1), shape (2,).
 
@@ -170,3 +174,5 @@ ROBOTS: Final = {
     ),
 }
 """Robots of this build by name; `magicbim` is the paper's prototype (section 5.1)."""
+
+PROTOTYPE: Final = ROBOTS["magicbim"]

@@ -1,18 +1,47 @@
 """Where the robot is set down: the node, or an error that says what is in the way."""
 
+import math
 from collections import Counter
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Literal, Optional
 
 import numpy as np
 
 from satAOI_geo.collision import Collider
 from satAOI_geo.errors import StartBlockedError
 from satAOI_geo.lattice import Lattice
-from satAOI_geo.plan import BoolArray, FloatArray, FloorPlan, Obstacle
-from satAOI_geo.reach import DiscComponents, PoseComponents
-from satAOI_geo.robot import Part, Robot
+from satAOI_geo.plan import BoolArray, FloorPlan, Frame, Obstacle
+from satAOI_geo.reach import DiscComponents, PoseComponents, State
+from satAOI_geo.robot import Robot
 from satAOI_geo.zones import largest, set_down
+
+
+@dataclass(frozen=True, slots=True)
+class StartMark:
+    """A start as it was asked for.
+
+    Attributes:
+        at_mm: Disc centre in the plan's frame.
+        source: `option`, or `drawing` for a mark in the drawing.
+        angles_rad: a1 and a2 of the pose, or None for any pose.
+    """
+
+    at_mm: tuple[float, float]
+    source: Literal["option", "drawing"] = "option"
+    angles_rad: tuple[float, float] | None = None
+
+    @classmethod
+    def of(cls, plan: FloorPlan) -> Optional["StartMark"]:
+        """The mark in the plan's drawing, or None where it has none."""
+        return None if plan.start_mm is None else cls(plan.start_mm, "drawing")
+
+    def turned(self, turn_rad: float) -> "StartMark":
+        """The same mark seen in axes turned by an angle."""
+        x_mm, y_mm = Frame(turn_rad=turn_rad).to_local_mm(self.at_mm).tolist()
+        if self.angles_rad is None:
+            return replace(self, at_mm=(x_mm, y_mm))
+        a1_rad, a2_rad = self.angles_rad
+        return replace(self, at_mm=(x_mm, y_mm), angles_rad=(a1_rad - turn_rad, a2_rad))
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,113 +49,132 @@ class Start:
     """Where the robot is set down.
 
     Attributes:
-        node: Row and column of the disc centre.
+        state: Node and pose.
         source: `option`, `drawing`, or `largest` when it was chosen for its area.
         disc_label: The disc-connected set that holds it.
         pose_label: The pose-connected set that holds it; of several the one of the largest area.
         n_components: How many pose-connected sets have a pose at the node.
     """
 
-    node: tuple[int, int]
+    state: State
     source: Literal["option", "drawing", "largest"]
     disc_label: int
     pose_label: int
     n_components: int
 
-
-def start_at(
-    node: tuple[int, int],
-    source: Literal["option", "drawing"],
-    disc: DiscComponents,
-    pose: PoseComponents,
-    disc_mm: float,
-) -> Start:
-    """The start at a free node."""
-    labels = pose.at_node(*node)
-    label = largest(pose, labels, pose.lattice, disc_mm)
-    return Start(node, source, int(disc.labels[node]), label, len(labels))
+    @property
+    def node(self) -> tuple[int, int]:
+        """Row and column of the disc centre."""
+        return self.state.iy, self.state.ix
 
 
-def largest_start(
-    connectivity: Literal["disc", "pose"],
-    disc: DiscComponents,
-    pose: PoseComponents,
-    disc_mm: float,
-) -> Start:
-    """The start that trowels the largest area, by the connectivity that is asked for."""
-    one_run_each = pose.members[pose.first[:-1]]
-    disc_of_pose = disc.labels[pose.runs.row[one_run_each], pose.runs.begin[one_run_each]]
-    labels = np.arange(len(disc_of_pose))
-    if connectivity == "disc":
-        best = largest(disc, range(len(disc.boxes)), pose.lattice, disc_mm)
-        labels = np.flatnonzero(disc_of_pose == best)
-    label = largest(pose, labels.tolist(), pose.lattice, disc_mm)
-    state = set_down(pose, label)
-    node = (state.iy, state.ix)
-    return Start(node, "largest", int(disc_of_pose[label]), label, len(pose.at_node(*node)))
+@dataclass(frozen=True, slots=True)
+class StartFinder:
+    """Finds the start among the connected sets.
 
-
-def free_node(
-    plan: FloorPlan,
-    robot: Robot,
-    lattice: Lattice,
-    free: BoolArray,
-    *,
-    start_mm: tuple[float, float],
-    clearance_mm: float,
-) -> tuple[int, int]:
-    """The node nearest to a start in the plan's frame.
-
-    Args:
-        plan: The floor and its obstacles.
+    Attributes:
+        plan: The floor and its obstacles, in the lattice's axes.
         robot: The robot.
-        lattice: Nodes and directions.
+        collider: The exact collision test, to name what is in the way.
         free: Nodes at which some pose is free, shape (n_rows, n_columns).
-        start_mm: Disc centre to start from.
-        clearance_mm: Distance kept beyond contact.
-
-    Raises:
-        StartBlockedError: If no pose is free there; it names what is in the way and the nearest
-            node with a free pose.
+        disc: The disc-connected sets.
+        pose: The pose-connected sets.
     """
-    node = lattice.nearest_node(*start_mm)
-    if node is not None and free[node]:
-        return node
-    at_mm = _in_drawing_mm(plan, start_mm)
-    where = f"start ({at_mm[0]:.1f}, {at_mm[1]:.1f}) mm"
-    obstacle = None
-    if node is None:
-        message = f"{where} lies outside the floor"
-    else:
-        obstacle = _in_the_way(Collider(plan, robot, clearance_mm), robot, lattice, node)
-        message = f"{where} is blocked: no pose is free there; {_named(obstacle)} is in the way"
-    nearest_mm = _in_drawing_mm(plan, _nearest_free_mm(free, lattice, start_mm))
-    nearest = nearest_mm / plan.frame.mm_per_unit
-    raise StartBlockedError(
-        f"{message}; the nearest node with a free pose is --start {nearest[0]:g},{nearest[1]:g}",
-        at_mm=(float(at_mm[0]), float(at_mm[1])),
-        handle=obstacle.handle if obstacle else "",
-        layer=obstacle.layer if obstacle else "",
-        nearest_mm=(float(nearest_mm[0]), float(nearest_mm[1])),
-    )
+
+    plan: FloorPlan
+    robot: Robot
+    collider: Collider
+    free: BoolArray
+    disc: DiscComponents
+    pose: PoseComponents
+
+    def at(self, mark: StartMark) -> Start:
+        """The start at the node nearest to a mark.
+
+        Raises:
+            StartBlockedError: If the pose asked for, or every pose, is blocked there; it names
+                what is in the way and the nearest node with a free pose.
+        """
+        lattice = self.pose.lattice
+        node = lattice.nearest_node(*mark.at_mm)
+        if node is None or not self.free[node]:
+            raise self._blocked(mark, node, None)
+        labels = self.pose.at_node(*node)
+        if mark.angles_rad is None:
+            label = largest(self.pose, labels, lattice, self.robot.disc_radius_mm)
+            state = self.pose.straightest(*node, label)
+        else:
+            state = _nearest_state(lattice, node, mark.angles_rad)
+            found = self.pose.at(*state)
+            if found is None:
+                raise self._blocked(mark, node, state)
+            label = found
+        return Start(state, mark.source, int(self.disc.labels[node]), label, len(labels))
+
+    def largest(self, connectivity: Literal["disc", "pose"]) -> Start:
+        """The start that trowels the largest area, by the connectivity that is asked for."""
+        lattice, disc_mm = self.pose.lattice, self.robot.disc_radius_mm
+        one_run_each = self.pose.members[self.pose.first[:-1]]
+        runs = self.pose.runs
+        disc_of_pose = self.disc.labels[runs.row[one_run_each], runs.begin[one_run_each]]
+        labels = np.arange(disc_of_pose.size)
+        if connectivity == "disc":
+            best = largest(self.disc, range(len(self.disc.boxes)), lattice, disc_mm)
+            labels = np.flatnonzero(disc_of_pose == best)
+        label = largest(self.pose, labels.tolist(), lattice, disc_mm)
+        state = set_down(self.pose, label)
+        n_components = len(self.pose.at_node(state.iy, state.ix))
+        return Start(state, "largest", int(disc_of_pose[label]), label, n_components)
+
+    def _blocked(
+        self, mark: StartMark, node: tuple[int, int] | None, state: State | None
+    ) -> StartBlockedError:
+        """The error for a mark; state is the pose asked for where another one is free."""
+        frame, lattice = self.plan.frame, self.pose.lattice
+        x_mm, y_mm = frame.to_drawing_mm(mark.at_mm).tolist()
+        obstacle = None
+        if node is None:
+            reason = "lies outside the floor"
+        else:
+            obstacle = self._in_the_way(node, state)
+            what = "no pose is free there" if state is None else "this pose is not free"
+            reason = f"is blocked: {what}; {_named(obstacle)} is in the way"
+        nearest_mm = frame.to_drawing_mm(_nearest_free_mm(self.free, lattice, mark.at_mm))
+        nearest = nearest_mm / frame.mm_per_unit
+        return StartBlockedError(
+            f"start ({x_mm:.1f}, {y_mm:.1f}) mm {reason}; the nearest node with a free pose is "
+            f"--start {nearest[0]:g},{nearest[1]:g}",
+            at_mm=(x_mm, y_mm),
+            handle=obstacle.handle if obstacle else "",
+            layer=obstacle.layer if obstacle else "",
+            nearest_mm=(float(nearest_mm[0]), float(nearest_mm[1])),
+        )
+
+    def _in_the_way(self, node: tuple[int, int], state: State | None) -> Obstacle | None:
+        """What the disc touches at a node, else what most of the poses asked for touch there.
+
+        None stands for the edge of the floor.
+        """
+        lattice, (iy, ix) = self.pose.lattice, node
+        touched = self.collider.touched(self.robot.disc().moved(lattice.x_mm(ix), lattice.y_mm(iy)))
+        if touched:
+            return touched[0]
+        every = np.ndindex(lattice.n_directions, len(lattice.swings))
+        poses = every if state is None else [(state.a1, state.swing)]
+        contacts = (self.collider.contact(lattice.pose(iy, ix, *pose)) for pose in poses)
+        (obstacle, _), *_ = Counter(c.obstacle for c in contacts if c is not None).most_common(1)
+        return obstacle
 
 
-def _in_the_way(
-    collider: Collider, robot: Robot, lattice: Lattice, node: tuple[int, int]
-) -> Obstacle | None:
-    """What the disc touches at a node, else what most poses there touch; None for the edge."""
-    iy, ix = node
-    disc = Part(np.zeros((2, 2)), robot.disc_radius_mm)
-    touched = collider.touched(disc.moved(lattice.x_mm(ix), lattice.y_mm(iy)))
-    if touched:
-        return touched[0]
-    contacts = (
-        collider.contact(lattice.pose(iy, ix, a1, swing))
-        for a1 in range(lattice.n_directions)
-        for swing in range(len(lattice.swings))
-    )
-    (obstacle, _), *_ = Counter(c.obstacle for c in contacts if c is not None).most_common(1)
-    return obstacle
+def _nearest_state(
+    lattice: Lattice, node: tuple[int, int], angles_rad: tuple[float, float]
+) -> State:
+    """The lattice's pose nearest to two angles."""
+    turn_rad = 2 * math.pi / lattice.n_directions
+    a1 = round(angles_rad[0] / turn_rad) % lattice.n_directions
+    wanted = angles_rad[1] / turn_rad
+    swing = min(range(len(lattice.swings)), key=lambda k: abs(lattice.swings[k] - wanted))
+    return State(*node, a1, swing)
 
 
 def _named(obstacle: Obstacle | None) -> str:
@@ -145,8 +193,3 @@ def _nearest_free_mm(
     y_mm = lattice.origin_mm[1] + (rows + 0.5) * lattice.step_mm
     nearest = int(np.hypot(x_mm - at_mm[0], y_mm - at_mm[1]).argmin())
     return float(x_mm[nearest]), float(y_mm[nearest])
-
-
-def _in_drawing_mm(plan: FloorPlan, at_mm: tuple[float, float]) -> FloatArray:
-    """A point of the plan in the drawing's axes, shape (2,)."""
-    return plan.frame.to_drawing_mm(at_mm)

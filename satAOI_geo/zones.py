@@ -14,7 +14,7 @@ from satAOI_geo.aoi import Aoi, area
 from satAOI_geo.discs import covered_cells
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray
-from satAOI_geo.reach import PoseComponents
+from satAOI_geo.reach import PoseComponents, State
 
 ZONE_MM2: Final = 500_000.0
 """Smaller zones are not worth a set-down: half a square metre is little more than one disc."""
@@ -29,16 +29,6 @@ class Components(Protocol):
 
     def nodes(self, label: int) -> BoolArray:
         """The nodes of one set, shape (n_rows, n_columns)."""
-
-
-@dataclass(frozen=True, slots=True)
-class State:
-    """A node with a pose: row, column, direction number, swing number."""
-
-    iy: int
-    ix: int
-    a1: int
-    swing: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,14 +125,7 @@ def set_down(components: PoseComponents, label: int) -> State:
     )
     at = np.unravel_index(int(depth.argmax()), depth.shape)
     iy, ix = int(at[0]) - 1 + rows.start, int(at[1]) - 1 + columns.start
-    turns = components.lattice.swings
-    straight_first = sorted(range(len(turns)), key=lambda swing: (abs(turns[swing]), swing))
-    return next(
-        State(iy, ix, a1, swing)
-        for swing in straight_first
-        for a1 in range(components.lattice.n_directions)
-        if components.at(iy, ix, a1, swing) == label
-    )
+    return components.straightest(iy, ix, label)
 
 
 def _area_mm2(components: Components, label: int, lattice: Lattice, disc_mm: float) -> float:

@@ -1,0 +1,144 @@
+"""The search: plan → free space → connected sets → start."""
+
+import math
+from dataclasses import dataclass
+from typing import Final, Literal, TypeAlias
+
+from satAOI_geo.align import wall_direction_rad
+from satAOI_geo.collision import Collider, Reference
+from satAOI_geo.errors import InputError, NothingFreeError
+from satAOI_geo.freespace import Engine, FreeSpace, free_space
+from satAOI_geo.intervals import Intervals
+from satAOI_geo.lattice import Lattice
+from satAOI_geo.plan import BoolArray, FloorPlan
+from satAOI_geo.progress import Stopwatch
+from satAOI_geo.reach import DiscComponents, PoseComponents
+from satAOI_geo.robot import Robot
+from satAOI_geo.start import Start, StartFinder, StartMark
+from satAOI_geo.units import MM2_PER_M2
+
+Connectivity: TypeAlias = Literal["disc", "pose"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settings:
+    """What a search is made with.
+
+    Attributes:
+        connectivity: `pose` for what motions join, `disc` for the paper's rule, an upper estimate.
+        step_mm: Side of a lattice cell.
+        n_directions: Directions in a full turn, a multiple of 4.
+        clearance_mm: Distance to keep beyond contact, 0 or more.
+        align_rad: Direction of the lattice in the drawing; None lays it along most of the walls.
+        engine: `fast`, or `reference` to ask the exact collision test node by node.
+        exact_outline: Keep the scallops between neighbouring discs in the outline.
+
+    Raises:
+        InputError: If the clearance or the direction is not a usable number.
+    """
+
+    connectivity: Connectivity = "pose"
+    step_mm: float = 10.0
+    n_directions: int = 24
+    clearance_mm: float = 0.0
+    align_rad: float | None = None
+    engine: Literal["fast", "reference"] = "fast"
+    exact_outline: bool = False
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.clearance_mm) and self.clearance_mm >= 0):
+            raise InputError(f"the clearance is {self.clearance_mm:g} mm; give 0 or more")
+        if self.align_rad is not None and not math.isfinite(self.align_rad):
+            raise InputError(f"the lattice's direction is {self.align_rad:g}; give an angle")
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """What a search has found.
+
+    Attributes:
+        plan: The plan, seen in the lattice's axes.
+        robot: The robot.
+        settings: What the search was made with.
+        lattice: Nodes and directions.
+        engine: Tells where a part touches something.
+        space: The free poses.
+        free: Nodes at which some pose is free, shape (n_rows, n_columns).
+        disc: The disc-connected sets.
+        pose: The pose-connected sets.
+        start: Where the robot is set down.
+    """
+
+    plan: FloorPlan
+    robot: Robot
+    settings: Settings
+    lattice: Lattice
+    engine: Engine
+    space: FreeSpace
+    free: BoolArray
+    disc: DiscComponents
+    pose: PoseComponents
+    start: Start
+
+
+def search(
+    plan: FloorPlan,
+    robot: Robot,
+    settings: Settings,
+    *,
+    start: StartMark | None,
+    watch: Stopwatch,
+) -> Search:
+    """Find where the robot can be and what it can get to.
+
+    Args:
+        plan: The floor and its obstacles.
+        robot: The robot.
+        settings: What the search is made with.
+        start: The start in the plan's frame; without it the plan's own mark, without that the
+            component of the largest area.
+        watch: Times the stages.
+
+    Raises:
+        InputError: If a setting is out of range.
+        LimitError: If the lattice would hold too many nodes.
+        NothingFreeError: If the robot fits nowhere on the floor.
+        StartBlockedError: If no pose is free at the start.
+    """
+    turn_rad = wall_direction_rad(plan) if settings.align_rad is None else settings.align_rad
+    mark = start if start is not None else StartMark.of(plan)
+    plan = plan.turned(turn_rad)
+    lattice = Lattice.over(
+        plan.floor.bounds, robot, step_mm=settings.step_mm, n_directions=settings.n_directions
+    )
+    with watch.stage("free space"):
+        engine = _engine(plan, robot, lattice, settings)
+        space = free_space(engine, robot, lattice, watch.share)
+        free = space.free_nodes()
+    if not free.any():
+        raise NothingFreeError(
+            f"robot '{robot.name}' fits nowhere on this floor of {plan.floor.area / MM2_PER_M2:.2f}"
+            " m²; check the drawing's unit, the layers taken for obstacles, and the clearance"
+        )
+    with watch.stage("reach"):
+        disc = DiscComponents.of(free)
+        pose = PoseComponents.of(engine, robot, space, watch.share)
+        finder = StartFinder(
+            plan, robot, Collider(plan, robot, settings.clearance_mm), free, disc, pose
+        )
+        found = (
+            finder.largest(settings.connectivity)
+            if mark is None
+            else finder.at(mark.turned(turn_rad))
+        )
+    return Search(plan, robot, settings, lattice, engine, space, free, disc, pose, found)
+
+
+def _engine(plan: FloorPlan, robot: Robot, lattice: Lattice, settings: Settings) -> Engine:
+    """The engine the settings name."""
+    if settings.engine == "reference":
+        return Reference(Collider(plan, robot, settings.clearance_mm), lattice)
+    return Intervals(plan, robot, lattice, settings.clearance_mm)
+
+
+DEFAULTS: Final = Settings()
