@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import Final
 
 import ezdxf
-import numpy as np
 from ezdxf import recover
 from ezdxf.document import Drawing
+from ezdxf.entities import DXFGraphic
 from ezdxf.lldxf.const import DXF2010, DXFError
 
 from satAOI_adapters.dxf_write.layers import PREFIX
 from satAOI_adapters.dxf_write.pen import Pen
+from satAOI_adapters.dxf_write.place import floor_bounds
 from satAOI_geo.errors import UnreadableError
 from satAOI_geo.plan import FloorPlan, Source, polygons_in
 
@@ -31,6 +32,9 @@ INSUNITS: Final = {
     "dm": 14,
 }
 """Value of the header variable $INSUNITS for a unit of length."""
+
+DAMAGED: Final = (DXFError, ValueError, LookupError, TypeError, AttributeError, OSError)
+"""What the library raises on a file that breaks the format's rules."""
 
 
 def base_document(plan: FloorPlan) -> Drawing:
@@ -85,10 +89,12 @@ def _opened(source: Source) -> Drawing:
         raise UnreadableError(f"cannot read '{path}' again: {error.strerror}") from error
     if source.sha256 and sha256(data).hexdigest() != source.sha256:
         raise UnreadableError(f"'{path}' was changed while it was worked on; run again")
-    try:
+    with contextlib.suppress(*DAMAGED):
         return ezdxf.readfile(path)
-    except (DXFError, ValueError, OSError):
+    try:
         return recover.readfile(path)[0]
+    except DAMAGED as error:
+        raise UnreadableError(f"'{path}' cannot be loaded to draw into: {error}") from error
 
 
 def _drawn(plan: FloorPlan) -> Drawing:
@@ -107,12 +113,10 @@ def _drawn(plan: FloorPlan) -> Drawing:
 
 
 def _look_at_floor(document: Drawing, plan: FloorPlan) -> None:
-    """Open the drawing with the whole floor in view, and room for the note beside it."""
-    left, bottom, right, top = plan.floor.bounds
-    corners = plan.frame.to_drawing([(left, bottom), (right, bottom), (right, top), (left, top)])
-    low, high = corners.min(axis=0), corners.max(axis=0)
+    """Open the drawing with the floor in the left half of a wide screen, the note in the right."""
+    left, bottom, right, top = floor_bounds(plan)
     document.set_modelspace_vport(
-        height=1.2 * float(np.max(high - low)), center=tuple((low + high) / 2)
+        height=1.2 * max(right - left, top - bottom), center=(right, (bottom + top) / 2)
     )
 
 
@@ -120,7 +124,8 @@ def _remove_earlier_output(document: Drawing) -> None:
     """Take everything on this program's layers out of model space."""
     space = document.modelspace()
     for entity in list(space):
-        if entity.dxf.layer.upper().startswith(PREFIX):
+        # an entity of an unknown type has no layer that could be asked for
+        if isinstance(entity, DXFGraphic) and entity.dxf.layer.upper().startswith(PREFIX):
             space.delete_entity(entity)
 
 

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterator, Mapping
 from pathlib import PurePath
-from typing import Final
+from typing import Final, TypeAlias
 
 from ezdxf.document import Drawing
 from ezdxf.entities import DXFEntity, XRecord
@@ -18,7 +18,10 @@ SCHEMA: Final = "sataoi-dxf/1"
 STRING_LIMIT: Final = 250
 """Characters in one string: DXF allows 255 bytes, and some readers stop at a longer one."""
 
-Facts = Mapping[str, str | int | float]
+SETTINGS: Final = {"input", "robot", "lattice", "floor", "start", "aoi"}
+"""Sections of the report that go into the drawing."""
+
+Facts: TypeAlias = Mapping[str, str | int | float]
 
 
 def add_appid(document: Drawing) -> None:
@@ -35,8 +38,8 @@ def attach(entity: DXFEntity, facts: Facts) -> None:
 def record_run(document: Drawing, result: Result) -> None:
     """Put the run's settings into the root dictionary, as JSON cut into short strings.
 
-    The strings of group code 300 are to be joined. Whatever differs between two equal runs, the
-    time they took and the folder they ran in, is left out.
+    The strings of group code 300 are to be joined. What differs between two equal runs, the time
+    they took and the folder they ran in, is left out.
     """
     text = json.dumps(_settings(result), sort_keys=True)
     chunks = [text[k : k + STRING_LIMIT] for k in range(0, len(text), STRING_LIMIT)]
@@ -47,9 +50,7 @@ def record_run(document: Drawing, result: Result) -> None:
 
 
 def _settings(result: Result) -> dict[str, object]:
-    figures = result.report.model_dump(
-        mode="json", by_alias=True, exclude={"timing_s", "findings", "free", "disc_connected"}
-    )
+    figures = result.report.model_dump(mode="json", include=SETTINGS)
     figures["input"]["path"] = PurePath(result.report.input.path).name
     frame = result.plan.frame
     figures["frame"] = {

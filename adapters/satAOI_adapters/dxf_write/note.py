@@ -26,10 +26,16 @@ from satAOI_adapters.dxf_write.layers import (
 )
 from satAOI_adapters.dxf_write.metadata import attach, one_line
 from satAOI_adapters.dxf_write.pen import Pen
-from satAOI_adapters.dxf_write.place import Bounds, entity_bounds, free_place
+from satAOI_adapters.dxf_write.place import (
+    Bounds,
+    corners_of,
+    entity_bounds,
+    floor_bounds,
+    free_place,
+)
 from satAOI_geo.aoi import Loop, Outline
 from satAOI_geo.pipeline import Result
-from satAOI_geo.plan import FloatArray, Frame, Kind
+from satAOI_geo.plan import Frame, Kind
 from satAOI_geo.report import Report
 
 TEXT_STYLE: Final = "SATAOI"
@@ -93,7 +99,7 @@ def draw_note(document: Drawing, result: Result) -> None:
     if TEXT_STYLE not in document.styles:
         document.styles.add(TEXT_STYLE, font=FONT)
     rows = note_rows(result)
-    plan = plan_bounds(result)
+    plan = floor_bounds(result.plan)
     height = text_height(plan)
     value_at = LABEL_AT + CHARACTER * max(len(row.label) for row in rows if row.value) + 1
     width = value_at + CHARACTER * max(len(row.value) for row in rows)
@@ -102,7 +108,7 @@ def draw_note(document: Drawing, result: Result) -> None:
         height * (sum(row.pitch for row in rows) + 2 * MARGIN),
     )
     within = free_place(plan, size, gap=GAP * height, taken=entity_bounds(space))
-    Pen(space, Frame(), NOTE.name).ring(_corners(within))
+    Pen(space, Frame(), NOTE.name).ring(corners_of(within))
     x, y = within[0] + MARGIN * height, within[3] - MARGIN * height
     for row in rows:
         middle = y - row.pitch * height / 2
@@ -127,22 +133,20 @@ def text_height(plan: Bounds) -> float:
     return max(math.sqrt(width * height) / 60, max(width, height) / 150)
 
 
-def plan_bounds(result: Result) -> Bounds:
-    """The floor's bounds, along the drawing's axes."""
-    corners = result.plan.frame.to_drawing(_corners(result.plan.floor.bounds))
-    (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
-    return float(left), float(bottom), float(right), float(top)
-
-
 def _area_rows(report: Report) -> list[Row]:
-    aoi = report.aoi
-    upper = " (upper estimate)" if aoi.connectivity == "disc" else ""
+    aoi, disc = report.aoi, report.disc_connected
     area = f"{aoi.area_m2:.2f} m² = {aoi.percent_of_free:.1f} % of the free floor"
-    return [
+    rows = [
         Row("Floor the robot can trowel"),
         Row("Area of interest", area, Swatch(EDGE.colour, EDGE.lineweight, filled=True)),
-        Row("Connectivity", f"{aoi.connectivity}-connected{upper}"),
         Row("Connected parts", str(aoi.n_parts)),
+    ]
+    if aoi.connectivity == "disc":
+        return [*rows, Row("Connectivity", "disc-connected, an upper estimate")]
+    return [
+        *rows,
+        Row("Connectivity", "pose-connected"),
+        Row("Upper estimate", f"{disc.area_m2:.2f} m², disc-connected"),
     ]
 
 
@@ -227,7 +231,7 @@ def _draw_text(space: Modelspace, text: str, at: tuple[float, float], height: fl
 def _draw_swatch(space: Modelspace, swatch: Swatch, at: tuple[float, float], height: float) -> None:
     x, y = at
     width, half_height = SWATCH[0] * height, SWATCH[1] * height / 2
-    corners = _corners((x, y - half_height, x + width, y + half_height))
+    corners = corners_of((x, y - half_height, x + width, y + half_height))
     line_pen = Pen(space, Frame(), NOTE.name, swatch.line)
     if swatch.filled:
         straight = np.column_stack((corners[:-1], np.zeros(4)))
@@ -241,12 +245,6 @@ def _draw_swatch(space: Modelspace, swatch: Swatch, at: tuple[float, float], hei
         else line_pen.ring(corners)
     )
     edge.dxf.lineweight = swatch.lineweight
-
-
-def _corners(bounds: Bounds) -> FloatArray:
-    """The corners of a rectangle, closed, shape (5, 2)."""
-    left, bottom, right, top = bounds
-    return np.array([(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)])
 
 
 def _escaped(text: str) -> str:

@@ -1,4 +1,4 @@
-"""Where beside the plan there is room for a note."""
+"""Where the floor lies in the drawing, and where beside it there is room for a note."""
 
 from collections.abc import Iterator
 from typing import TypeAlias
@@ -8,10 +8,23 @@ from ezdxf import bbox
 from ezdxf.entities import DXFGraphic, LWPolyline, Polyline
 from ezdxf.layouts import Modelspace
 
-from satAOI_geo.plan import FloatArray
+from satAOI_geo.plan import FloatArray, FloorPlan
 
 Bounds: TypeAlias = tuple[float, float, float, float]
 """Left, bottom, right, top in drawing units."""
+
+
+def floor_bounds(plan: FloorPlan) -> Bounds:
+    """The floor's bounds along the drawing's axes."""
+    corners = plan.frame.to_drawing(corners_of(plan.floor.bounds))
+    (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
+    return float(left), float(bottom), float(right), float(top)
+
+
+def corners_of(bounds: Bounds) -> FloatArray:
+    """The corners of a rectangle, closed, shape (5, 2)."""
+    left, bottom, right, top = bounds
+    return np.array([(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)])
 
 
 def free_place(plan: Bounds, size: tuple[float, float], *, gap: float, taken: FloatArray) -> Bounds:
