@@ -1,29 +1,29 @@
 """Free space by row intervals is the free space of the reference, state by state."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 import pytest
-from shapely.affinity import rotate, translate
-from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from satAOI_geo.collision import Collider, Reference
+from satAOI_geo.errors import InputError
 from satAOI_geo.freespace import FreeSpace, free_space, run_threads
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
-from satAOI_geo.plan import BoolArray, Circle, FloorPlan, Kind, Obstacle, Shape
+from satAOI_geo.plan import BoolArray, FloorPlan
 from satAOI_geo.robot import ROBOTS, Robot
-from tests import plans
+from tests import drawn, plans
 from tests.oracle import Oracle
 
 PROTOTYPE = ROBOTS["magicbim"]
 
-DRAWN = [plans.random_plan(seed) for seed in range(100, 110)]
-"""Ten random plans, beside the named ones."""
-
-STATES = 1200
-"""States compared on each plan; with 10 random and 9 named plans 22 800."""
+Numbers: TypeAlias = tuple[int, int, int, int]
+"""Row, column, direction number and swing number of a state."""
 
 
 @dataclass(frozen=True)
@@ -40,72 +40,219 @@ class Setting:
             plan.floor.bounds, self.robot, step_mm=self.step_mm, n_directions=self.n_directions
         )
 
-    def fast(self, plan: FloorPlan) -> FreeSpace:
-        lattice = self.lattice(plan)
-        return free_space(
-            Intervals(plan, self.robot, lattice, self.clearance_mm), self.robot, lattice
-        )
+    def engine(self, plan: FloorPlan) -> Intervals:
+        return Intervals(plan, self.robot, self.lattice(plan), self.clearance_mm)
+
+    def space(self, plan: FloorPlan) -> FreeSpace:
+        return free_space(self.engine(plan), self.robot, self.lattice(plan))
+
+    def collider(self, plan: FloorPlan) -> Collider:
+        return Collider(plan, self.robot, self.clearance_mm)
+
+
+SETTINGS = {
+    "prototype": Setting(),
+    "with_clearance": Setting(step_mm=33.0, n_directions=12, clearance_mm=35.0),
+    "pivot_behind_the_vehicle": Setting(
+        Robot(
+            name="drawbar",
+            vehicle_length_mm=611.7,
+            vehicle_width_mm=433.1,
+            pivot_offset_mm=702.9,
+            arm_length_mm=533.3,
+            disc_radius_mm=217.3,
+        ),
+        step_mm=7.3,
+        n_directions=8,
+    ),
+    "pivot_ahead_of_a_wide_vehicle": Setting(
+        Robot(
+            name="bulldozer",
+            vehicle_length_mm=260.0,
+            vehicle_width_mm=1111.0,
+            pivot_offset_mm=-333.3,
+            arm_length_mm=480.0,
+            disc_radius_mm=480.0 - 1 / 3,
+            swing_min_rad=math.radians(-20),
+            swing_max_rad=math.radians(100),
+        ),
+        step_mm=33.0,
+        n_directions=36,
+        clearance_mm=0.5,
+    ),
+    "full_turn_of_swing": Setting(
+        Robot(
+            name="carousel",
+            vehicle_length_mm=430.0,
+            vehicle_width_mm=290.0,
+            pivot_offset_mm=40.0,
+            arm_length_mm=750.0,
+            disc_radius_mm=150.0,
+            swing_min_rad=-math.pi,
+            swing_max_rad=math.pi,
+        ),
+        step_mm=100.0,
+        n_directions=4,
+    ),
+}
 
 
 def at_boundary(free: BoolArray) -> BoolArray:
     """Nodes with a neighbour in row or column of which the opposite is true."""
     changed = np.zeros_like(free)
-    for axis in (0, 1):
-        flips = np.diff(free, axis=axis)
-        before, after = [(0, 1), (0, 0)], [(1, 0), (0, 0)]
-        changed |= np.pad(flips, before if axis == 0 else before[::-1])
-        changed |= np.pad(flips, after if axis == 0 else after[::-1])
+    up, right = free[1:] != free[:-1], free[:, 1:] != free[:, :-1]
+    changed[1:] |= up
+    changed[:-1] |= up
+    changed[:, 1:] |= right
+    changed[:, :-1] |= right
     return changed
 
 
-def sampled(space: FreeSpace, n_states: int, seed: int) -> tuple[list[tuple[int, ...]], int]:
-    """States (iy, ix, a1, swing) drawn at random, and how many lie beside the boundary.
+def drawn_nodes(free: BoolArray, draw: np.random.Generator) -> Iterator[tuple[int, int]]:
+    """Ten nodes beside the boundary of the free nodes, as far as there are, and five anywhere."""
+    beside = np.argwhere(at_boundary(free))
+    if len(beside):
+        yield from draw.choice(beside, size=min(10, len(beside)), replace=False)
+    yield from draw.integers(free.shape, size=(5, 2))
 
-    Of each pose drawn, two nodes beside the boundary of its free nodes are taken and one anywhere.
-    """
-    draw = np.random.default_rng(seed)
+
+def sampled(space: FreeSpace, n_states: int) -> tuple[list[Numbers], int]:
+    """States drawn at random, the same on every run, and how many lie beside the boundary."""
+    draw = np.random.default_rng(n_states)
     lattice = space.lattice
-    states: list[tuple[int, ...]] = []
+    states: list[Numbers] = []
     n_beside = 0
     while len(states) < n_states:
-        a1 = int(draw.integers(lattice.n_directions))
-        swing = int(draw.integers(len(lattice.swings)))
-        beside = at_boundary(lattice.unpacked(space.words[a1, swing]))
-        anywhere = draw.integers(lattice.shape)
-        chosen = [anywhere]
-        if beside.any():
-            candidates = np.argwhere(beside)
-            chosen += list(draw.choice(candidates, size=min(10, len(candidates))))
-            chosen += list(draw.integers(lattice.shape, size=(4, 2)))
-        n_beside += sum(bool(beside[tuple(node)]) for node in chosen)
-        states += [(int(iy), int(ix), a1, swing) for iy, ix in chosen]
+        a1, swing = draw.integers((lattice.n_directions, len(lattice.swings)))
+        free = lattice.unpacked(space.words[a1, swing])
+        beside = at_boundary(free)
+        for iy, ix in drawn_nodes(free, draw):
+            states.append((int(iy), int(ix), int(a1), int(swing)))
+            n_beside += bool(beside[iy, ix])
     return states, n_beside
 
 
-def mismatches(
-    space: FreeSpace, collider: Collider, states: list[tuple[int, ...]]
-) -> list[tuple[int, ...]]:
+def mismatches(space: FreeSpace, collider: Collider, states: list[Numbers]) -> list[Numbers]:
     """The states about which the two disagree."""
-    lattice = space.lattice
-    return [
-        state
-        for state in states
-        if space.is_free(*state) != collider.is_free(lattice.pose(*state))
-    ]
+    pose = space.lattice.pose
+    return [s for s in states if space.is_free(*s) != collider.is_free(pose(*s))]
+
+
+# 19 plans of 1200 states: 22 800, on the lattice that is used by default
 
 
 @pytest.mark.parametrize("name", sorted(plans.CASES))
 def test_every_state_tried_on_a_named_plan_is_as_the_reference_says(name: str) -> None:
-    plan = plans.CASES[name]().plan
-    space = Setting().fast(plan)
-    states, n_beside = sampled(space, STATES, seed=1)
+    plan, setting = plans.CASES[name]().plan, Setting()
+    space = setting.space(plan)
+    states, n_beside = sampled(space, 1200)
     assert n_beside >= len(states) / 2
-    assert mismatches(space, Collider(plan, PROTOTYPE), states) == []
+    assert mismatches(space, setting.collider(plan), states) == []
 
 
-@pytest.mark.parametrize("plan", DRAWN)
-def test_every_state_tried_on_a_random_plan_is_as_the_reference_says(plan: FloorPlan) -> None:
-    space = Setting().fast(plan)
-    states, n_beside = sampled(space, STATES, seed=2)
+@pytest.mark.parametrize("seed", range(100, 110))
+def test_every_state_tried_on_a_random_plan_is_as_the_reference_says(seed: int) -> None:
+    plan, setting = plans.random_plan(seed), Setting()
+    space = setting.space(plan)
+    states, n_beside = sampled(space, 1200)
     assert n_beside >= len(states) / 2
-    assert mismatches(space, Collider(plan, PROTOTYPE), states) == []
+    assert mismatches(space, setting.collider(plan), states) == []
+
+
+@pytest.mark.parametrize("setting", SETTINGS.values(), ids=SETTINGS)
+@pytest.mark.parametrize("name", drawn.HARD)
+def test_every_state_tried_on_a_hard_plan_is_as_the_reference_says(
+    name: str, setting: Setting
+) -> None:
+    plan = drawn.HARD[name]
+    space = setting.space(plan)
+    states, _ = sampled(space, 300)
+    assert mismatches(space, setting.collider(plan), states) == []
+
+
+@settings(max_examples=60)
+@given(
+    drawn.robots(),
+    st.integers(0, 10**6),
+    st.sampled_from([7.3, 10.0, 33.0, 100.0]),
+    st.sampled_from([4, 8, 12, 24, 36]),
+    st.sampled_from([0.0, 35.0]),
+)
+def test_every_state_tried_with_a_random_robot_is_as_the_reference_says(
+    robot: Robot, seed: int, step_mm: float, n_directions: int, clearance_mm: float
+) -> None:
+    plan = plans.random_plan(seed, n_obstacles=5, side_mm=(1500, 3500))
+    setting = Setting(robot, step_mm, n_directions, clearance_mm)
+    space = setting.space(plan)
+    states, _ = sampled(space, 100)
+    assert mismatches(space, setting.collider(plan), states) == []
+
+
+@pytest.mark.parametrize("name", drawn.HARD)
+def test_every_state_of_a_coarse_lattice_is_as_the_definitions_say(name: str) -> None:
+    plan = drawn.HARD[name]
+    setting = Setting(step_mm=187.0, n_directions=8, clearance_mm=3.0)
+    space, lattice = setting.space(plan), setting.lattice(plan)
+    oracle = Oracle(plan, PROTOTYPE, lattice, clearance_mm=3.0)
+    for a1 in range(lattice.n_directions):
+        for swing, a2 in enumerate(lattice.swings):
+            expected = np.reshape(oracle.free((a1, a2), oracle.nodes), lattice.shape)
+            assert np.array_equal(lattice.unpacked(space.words[a1, swing]), expected)
+
+
+def test_slow_engine_finds_the_same_free_space() -> None:
+    plan = drawn.HARD["comb_with_holes"]
+    setting = Setting(step_mm=250.0, n_directions=8)
+    lattice = setting.lattice(plan)
+    reference = Reference(setting.collider(plan), lattice)
+    slow = free_space(reference, PROTOTYPE, lattice)
+    assert np.array_equal(slow.words, setting.space(plan).words)
+
+
+def test_arm_without_length_leaves_the_disc_to_be_tested() -> None:
+    # an arm as long as the disc's radius: the spine is a single point, 300 mm from the wall
+    robot = replace(PROTOTYPE, vehicle_length_mm=50.0, vehicle_width_mm=50.0, arm_length_mm=350.0)
+    plan = drawn.plan_of(drawn.ROOM)
+    setting = Setting(robot, step_mm=100.0, n_directions=4)
+    space = setting.space(plan)
+    states, n_beside = sampled(space, 300)
+    assert n_beside > 0
+    assert mismatches(space, setting.collider(plan), states) == []
+
+
+def test_free_nodes_are_those_with_some_free_pose() -> None:
+    space = Setting(step_mm=50.0, n_directions=8).space(drawn.HARD["spiral"])
+    every = np.array([[space.lattice.unpacked(words) for words in row] for row in space.words])
+    assert np.array_equal(space.free_nodes(), every.any(axis=(0, 1)))
+    assert space.n_states() == every.sum()
+
+
+def test_free_space_of_an_empty_room_is_what_walls_leave() -> None:
+    # straight to the east in a room of 4000 × 3600: the disc's rim 350 behind, the vehicle's front
+    # 1574.5 ahead, its sides 415 off, and contact is collision
+    setting = Setting()
+    plan = drawn.plan_of(drawn.ROOM)
+    space, lattice = setting.space(plan), setting.lattice(plan)
+    columns = [ix for ix in range(400) if 350 < lattice.x_mm(ix) < 4000 - 1574.5]
+    rows = [iy for iy in range(360) if 415 < lattice.y_mm(iy) < 3600 - 415]
+    expected = np.zeros((360, 400), dtype=bool)
+    expected[np.ix_(rows, columns)] = True
+    straight = lattice.swings.index(0)
+    assert np.array_equal(lattice.unpacked(space.words[0, straight]), expected)
+
+
+def test_full_house_of_threads_does_every_job_once_and_tells_how_far_it_is() -> None:
+    done: list[int] = []
+    shares: list[float] = []
+    run_threads(done.append, 50, shares.append)
+    assert sorted(done) == list(range(50))
+    assert shares == [k / 50 for k in range(1, 51)]
+
+
+def test_error_in_a_thread_is_raised_to_the_caller() -> None:
+    def refuse(job: int) -> None:
+        if job == 7:
+            raise InputError("job 7")
+
+    with pytest.raises(InputError, match="job 7"):
+        run_threads(refuse, 20)
