@@ -11,6 +11,7 @@ from shapely.geometry import LineString, Polygon, box
 from satAOI_geo.aoi import Aoi, Loop, Outline
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import Circle, FloorPlan, Frame, Kind, Obstacle, Source
+from satAOI_geo.search import Settings
 
 QUARTER_BULGE = np.tan(np.pi / 8)
 
@@ -44,8 +45,11 @@ def furnished_room() -> FloorPlan:
 
 @cache
 def furnished_result() -> Result:
-    """The area of interest of the furnished room, in one part with holes."""
-    return area_of_interest(furnished_room())
+    """The area of interest of the furnished room, in one part with holes.
+
+    The lattice is coarse, so that scallops between neighbouring discs stay arcs.
+    """
+    return area_of_interest(furnished_room(), settings=Settings(step_mm=25.0, align_rad=0.0))
 
 
 def two_parts() -> tuple[Outline, ...]:
@@ -72,7 +76,12 @@ def with_parts(result: Result, outlines: tuple[Outline, ...]) -> Result:
     return replace(result, aoi=aoi)
 
 
+def with_plan(result: Result, plan: FloorPlan) -> Result:
+    """The same result with another plan, as far as a writer looks at it."""
+    return replace(result, search=replace(result.search, plan=plan))
+
+
 def on_drawing(result: Result, path: Path, unit: str, frame: Frame) -> Result:
     """The same result as if its plan had been read from a DXF file."""
     source = Source(str(path), sha256(path.read_bytes()).hexdigest(), "dxf", unit, "header")
-    return replace(result, plan=replace(result.plan, source=source, frame=frame))
+    return with_plan(result, replace(result.plan, source=source, frame=frame))

@@ -75,7 +75,7 @@ def write_npz(path: Path, result: Result) -> None:
         step_mm=np.float64(result.lattice.step_mm),
         turn_rad=np.float64(frame.turn_rad),
         mm_per_unit=np.float64(frame.mm_per_unit),
-        start_node=np.array(result.start_node),
+        start_node=np.array(result.search.start.node),
     )
     _write(path, result, buffer.getvalue())
 

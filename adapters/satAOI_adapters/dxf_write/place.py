@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import TypeAlias
 
 import numpy as np
+import shapely
 from ezdxf import bbox
 from ezdxf.entities import DXFGraphic, LWPolyline, Polyline
 from ezdxf.layouts import Modelspace
@@ -16,7 +17,7 @@ Bounds: TypeAlias = tuple[float, float, float, float]
 
 def floor_bounds(plan: FloorPlan) -> Bounds:
     """The floor's bounds along the drawing's axes."""
-    corners = plan.frame.to_drawing(corners_of(plan.floor.bounds))
+    corners = plan.frame.to_drawing(shapely.get_coordinates(plan.floor))
     (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
     return float(left), float(bottom), float(right), float(top)
 

@@ -36,7 +36,7 @@ def draw_area(space: Modelspace, result: Result) -> list[DXFGraphic]:
         facts = {
             "part": number,
             "area_m2": outline.area_mm2() / MM2_PER_M2,
-            "connectivity": result.connectivity,
+            "connectivity": result.settings.connectivity,
             "robot": result.robot.name,
         }
         hatch = fill_pen.fill(outline)
@@ -52,7 +52,7 @@ def draw_area(space: Modelspace, result: Result) -> list[DXFGraphic]:
 def draw_start(space: Modelspace, result: Result) -> None:
     """Draw the disc at the start, with a cross and a point at its centre."""
     lattice, pen = result.lattice, Pen(space, result.plan.frame, START.name)
-    iy, ix = result.start_node
+    iy, ix = result.search.start.node
     x_mm, y_mm = lattice.x_mm(ix), lattice.y_mm(iy)
     radius_mm = result.robot.disc_radius_mm
     pen.circle((x_mm, y_mm), radius_mm)
