@@ -19,7 +19,7 @@ from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray, FloatArray
 
 CLEAN_MM = 0.05
-"""How far inside the exact outline the clean one may run: a twentieth of what a drawing shows."""
+"""How far inside the exact outline the clean one may run: far less than a drawing can show."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,12 +188,18 @@ def area(
     raster.flags.writeable = False
     arcs = boundary(reached, radius)
     begins_mm = np.array(lattice.origin_mm) + (arcs.begins + 0.5) * lattice.step_mm
-    vertices = np.column_stack((begins_mm, np.tan(arcs.spans_rad / 4)))
+    vertices = np.column_stack((begins_mm, _bulges(arcs.spans_rad)))
     loops = arcs.loops
     if not exact:
         vertices, loops = _cleaned(vertices, arcs, disc_radius_mm)
     raster_area_mm2 = float(np.count_nonzero(raster)) * lattice.step_mm**2
     return Aoi(raster, _outlines(_split(vertices, loops)), raster_area_mm2)
+
+
+def _bulges(spans_rad: FloatArray) -> FloatArray:
+    """tan(span / 4) for spans up to π, where this form gives 1 exactly."""
+    bulges: FloatArray = np.sin(spans_rad / 2) / (1 + np.cos(spans_rad / 2))
+    return bulges
 
 
 def _cleaned(
