@@ -9,7 +9,8 @@
     │   └── EmptyPlanError    it holds nothing to work on
     ├── StartError            the robot cannot be set down                 (LookupError)
     │   ├── StartBlockedError   at the place that was asked for
-    │   └── NothingFreeError    anywhere on the floor
+    │   ├── NothingFreeError    anywhere on the floor
+    │   └── NoRouteError        so that it could trowel a point
     └── LimitError            a stated limit was reached                   (RuntimeError)
 
 Each message says what, where, how much and what to do; the same facts are attributes.
@@ -103,6 +104,18 @@ class StartBlockedError(StartError):
 
 class NothingFreeError(StartError):
     """The robot fits nowhere on this floor."""
+
+
+class NoRouteError(StartError):
+    """No way leads from the start to a pose that trowels a point.
+
+    Attributes:
+        at_mm: The point, in the drawing's axes in millimetres.
+    """
+
+    def __init__(self, message: str, *, at_mm: tuple[float, float]) -> None:
+        super().__init__(message)
+        self.at_mm = at_mm
 
 
 class LimitError(SatAoiError, RuntimeError):

@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from satAOI_geo.lattice import WORD_BITS, Lattice, Words
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.robot import Part, Robot
 from satAOI_geo.sweep import carried, stepped, turned
+
+Answer = TypeVar("Answer")
 
 
 class Engine(Protocol):
@@ -151,13 +153,19 @@ def moves(engine: Engine, robot: Robot, space: FreeSpace, a1: int) -> Iterator[M
 
 
 def run_threads(
-    job: Callable[[int], None], n_jobs: int, progress: Callable[[float], None] | None = None
-) -> None:
-    """Run jobs 0 .. n_jobs - 1, a thread per core; the kernels release the interpreter's lock."""
+    job: Callable[[int], Answer], n_jobs: int, progress: Callable[[float], None] | None = None
+) -> list[Answer]:
+    """The answers of jobs 0 .. n_jobs - 1, a thread per core.
+
+    The kernels release the interpreter's lock. Progress is called with the share that is done.
+    """
+    answers: list[Answer] = []
     with ThreadPoolExecutor(max_workers=_cores()) as pool:
-        for n_done, _ in enumerate(pool.map(job, range(n_jobs)), start=1):
+        for answer in pool.map(job, range(n_jobs)):
+            answers.append(answer)
             if progress is not None:
-                progress(n_done / n_jobs)
+                progress(len(answers) / n_jobs)
+    return answers
 
 
 def _cores() -> int:

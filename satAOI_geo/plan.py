@@ -95,6 +95,10 @@ class Obstacle:
         """The shape as shapely sees it; a circle as a polygon of the same area."""
         return self.shape.polygon() if isinstance(self.shape, Circle) else self.shape
 
+    def label(self) -> str:
+        """The obstacle as a person can find it in the drawing."""
+        return f"{self.kind} {self.handle} on layer '{self.layer}'"
+
 
 @dataclass(frozen=True, slots=True)
 class Finding:

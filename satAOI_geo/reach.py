@@ -95,16 +95,13 @@ class PoseComponents:
     ) -> "PoseComponents":
         """Join all free states by all moves whose sweep is free."""
         n_directions = space.lattice.n_directions
-        slices: list[list[SliceRuns]] = [[] for _ in range(n_directions)]
 
-        def gather(a1: int) -> None:
+        def gather(a1: int) -> list[SliceRuns]:
             rights = steps_right(engine, robot, space, a1)
-            slices[a1] = [
-                SliceRuns.of(free, right)
-                for free, right in zip(space.words[a1], rights, strict=True)
-            ]
+            pairs = zip(space.words[a1], rights, strict=True)
+            return [SliceRuns.of(free, right) for free, right in pairs]
 
-        run_threads(gather, n_directions, progress and (lambda share: progress(share / 4)))
+        slices = run_threads(gather, n_directions, progress and (lambda done: progress(done / 4)))
         runs = Runs.joined(slices)
         parents = np.arange(runs.begin.size, dtype=np.int32)
         one_at_a_time = Lock()
@@ -143,8 +140,8 @@ class PoseComponents:
 
     def at(self, iy: int, ix: int, a1: int, swing: int) -> int | None:
         """The set that holds a state, or None when the state is not free."""
-        run = self.runs.at(iy, ix, a1, swing)
-        return None if run is None else int(self.labels[run])
+        run = self.runs.holding(iy, ix, a1, swing)
+        return None if run < 0 else int(self.labels[run])
 
     def at_node(self, iy: int, ix: int) -> list[int]:
         """The sets that hold some pose at a node, ascending."""

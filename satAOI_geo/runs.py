@@ -50,11 +50,11 @@ class Runs:
             np.concatenate([one.end for one in flat]),
         )
 
-    def at(self, iy: int, ix: int, a1: int, swing: int) -> int | None:
-        """The run that holds a state, or None when the state is not free."""
+    def holding(self, iy: int, ix: int, a1: int, swing: int) -> int:
+        """The run that holds a state, or -1 when the state is not free."""
         low, high = self.first[a1, swing, iy], self.first[a1, swing, iy + 1]
-        run = low + int(np.searchsorted(self.begin[low:high], ix, side="right")) - 1
-        return int(run) if run >= low and ix <= self.end[run] else None
+        run = int(low + np.searchsorted(self.begin[low:high], ix, side="right")) - 1
+        return run if run >= low and ix <= self.end[run] else -1
 
 
 @dataclass(frozen=True, slots=True)

@@ -138,7 +138,8 @@ class StartFinder:
         else:
             obstacle = self._in_the_way(node, state)
             what = "no pose is free there" if state is None else "this pose is not free"
-            reason = f"is blocked: {what}; {_named(obstacle)} is in the way"
+            name = obstacle.label() if obstacle else "the edge of the floor"
+            reason = f"is blocked: {what}; {name} is in the way"
         nearest_mm = frame.to_drawing_mm(_nearest_free_mm(self.free, lattice, mark.at_mm))
         nearest = nearest_mm / frame.mm_per_unit
         return StartBlockedError(
@@ -175,13 +176,6 @@ def _nearest_state(
     wanted = angles_rad[1] / turn_rad
     swing = min(range(len(lattice.swings)), key=lambda k: abs(lattice.swings[k] - wanted))
     return State(*node, a1, swing)
-
-
-def _named(obstacle: Obstacle | None) -> str:
-    """An obstacle as a person can find it in the drawing."""
-    if obstacle is None:
-        return "the edge of the floor"
-    return f"{obstacle.kind} {obstacle.handle} on layer '{obstacle.layer}'"
 
 
 def _nearest_free_mm(

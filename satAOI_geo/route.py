@@ -1,0 +1,166 @@
+"""Routes: how the robot gets from where it is set down to where it trowels a point.
+
+Breadth first over the runs of the start's component, then along the states of each run. Every two
+states in a row are joined by one move whose whole sweep is free, and every move is straight in
+(x, y, a1, a2), so a route can be driven, and checked, by interpolation.
+"""
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+from scipy.sparse.csgraph import breadth_first_order
+
+from satAOI_geo.errors import NoRouteError
+from satAOI_geo.freespace import moves, run_threads
+from satAOI_geo.lattice import Lattice
+from satAOI_geo.reach import State, links_of
+from satAOI_geo.robot import Pose
+from satAOI_geo.search import Search
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """A way through free poses.
+
+    Attributes:
+        lattice: Nodes and directions.
+        states: Where the robot stands, one move from each to the next.
+    """
+
+    lattice: Lattice
+    states: tuple[State, ...]
+
+    def poses(self) -> list[Pose]:
+        """The poses of the states, a1 running on past a full turn where the robot does."""
+        found: list[Pose] = []
+        turn_rad = 2 * math.pi
+        for state in self.states:
+            pose = self.lattice.pose(*state)
+            before_rad = found[-1].a1_rad if found else pose.a1_rad
+            before_a2_rad = found[-1].a2_rad if found else pose.a2_rad
+            a1_rad = pose.a1_rad + turn_rad * round((before_rad - pose.a1_rad) / turn_rad)
+            a2_rad = pose.a2_rad + turn_rad * round((before_a2_rad - pose.a2_rad) / turn_rad)
+            found.append(Pose(pose.x_mm, pose.y_mm, a1_rad, a2_rad))
+        return found
+
+    @property
+    def length_mm(self) -> float:
+        """How far the disc's centre travels."""
+        at_mm = np.array([(pose.x_mm, pose.y_mm) for pose in self.poses()])
+        return float(np.hypot(*np.diff(at_mm, axis=0).T).sum())
+
+
+class RouteMap:
+    """The runs of the start's component and what links them, for any number of routes."""
+
+    def __init__(self, found: Search) -> None:
+        self._search = found
+        # numbers of the component's runs, ascending; below, a run is its place in this list
+        self._runs = found.pose.runs_of(found.start.pose_label)
+        pairs = self._links()
+        n_runs = self._runs.size
+        keys = pairs[:, 0].astype(np.int64) * n_runs + pairs[:, 1]
+        self._keys, first = np.unique(keys, return_index=True)
+        self._columns = pairs[first, 2]
+        graph = scipy.sparse.csr_array(
+            (np.ones(first.size, dtype=np.bool_), (pairs[first, 0], pairs[first, 1])),
+            shape=(n_runs, n_runs),
+        )
+        start_run = found.pose.runs.holding(*found.start.state)
+        self._start = int(np.searchsorted(self._runs, start_run))
+        order, self._before = breadth_first_order(graph, self._start, directed=True)
+        self._rank = np.empty(n_runs, dtype=np.int64)
+        self._rank[order] = np.arange(order.size)
+
+    def to(self, at_mm: tuple[float, float]) -> Route:
+        """A way from the start to a pose whose disc covers a point of the plan.
+
+        Of the runs that cover the point, the one fewest moves between runs away is taken, and of
+        its nodes the one nearest to where it is entered.
+
+        Raises:
+            NoRouteError: If no state of the start's component covers the point.
+        """
+        runs, lattice = self._search.pose.runs, self._search.lattice
+        begin, end = self._covering_columns(at_mm)
+        reaching = np.flatnonzero(begin <= end)
+        if not reaching.size:
+            x_mm, y_mm = self._search.plan.frame.to_drawing_mm(at_mm).tolist()
+            raise NoRouteError(
+                f"the point ({x_mm:.1f}, {y_mm:.1f}) mm is not in the area that the robot can "
+                "trowel from its start; 'explain' tells why",
+                at_mm=(x_mm, y_mm),
+            )
+        goal = int(reaching[self._rank[reaching].argmin()])
+        chain = [goal]
+        while chain[-1] != self._start:
+            chain.append(int(self._before[chain[-1]]))
+        chain.reverse()
+
+        state = self._search.start.state
+        states = [state]
+        for run, next_run in pairwise(chain):
+            column = int(
+                self._columns[np.searchsorted(self._keys, run * self._runs.size + next_run)]
+            )
+            states.extend(_walk(state, column))
+            state = self._state(next_run, column)
+            states.append(state)
+        states.extend(_walk(state, min(max(state.ix, int(begin[goal])), int(end[goal]))))
+        return Route(lattice, tuple(states))
+
+    def _links(self) -> npt.NDArray[np.int64]:
+        """What links the component's runs, both ways: a run, another, a column; shape (n, 3)."""
+        found = self._search
+        inside = found.pose.labels == found.start.pose_label
+
+        def gather(a1: int) -> npt.NDArray[np.int32]:
+            return np.concatenate(
+                [
+                    pairs[inside[pairs[:, 0]]]
+                    for move in moves(found.engine, found.robot, found.space, a1)
+                    for pairs in [links_of(found.pose.runs, move)]
+                ]
+            )
+
+        pairs = np.concatenate(run_threads(gather, found.lattice.n_directions)).astype(np.int64)
+        pairs[:, :2] = np.searchsorted(self._runs, pairs[:, :2])
+        return np.concatenate((pairs, pairs[:, (1, 0, 2)]))
+
+    def _covering_columns(
+        self, at_mm: tuple[float, float]
+    ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+        """For each run its first and last column whose disc covers a point; none: first > last."""
+        lattice, runs = self._search.lattice, self._search.pose.runs
+        step_mm = lattice.step_mm
+        x = (at_mm[0] - lattice.origin_mm[0]) / step_mm - 0.5
+        y = (at_mm[1] - lattice.origin_mm[1]) / step_mm - 0.5
+        radius = self._search.robot.disc_radius_mm / step_mm
+        rise = runs.row[self._runs] - y
+        # where the disc's row does not come near the point the half width is not a number
+        half = np.sqrt(np.where(np.abs(rise) <= radius, radius**2 - rise**2, np.nan))
+        nowhere = np.isnan(half)
+        first = np.where(nowhere, 1, np.ceil(x - half)).astype(np.int64)
+        last = np.where(nowhere, 0, np.floor(x + half)).astype(np.int64)
+        return (
+            np.where(nowhere, first, np.maximum(first, runs.begin[self._runs])),
+            np.where(nowhere, last, np.minimum(last, runs.end[self._runs])),
+        )
+
+    def _state(self, run: int, ix: int) -> State:
+        """The state of a run at a column."""
+        runs = self._search.pose.runs
+        number = int(self._runs[run])
+        pose = int(np.searchsorted(runs.first[:, :, 0].ravel(), number, side="right")) - 1
+        return State(int(runs.row[number]), ix, *divmod(pose, runs.first.shape[1]))
+
+
+def _walk(state: State, column: int) -> list[State]:
+    """The states after one on the way along its run to a column, the last included."""
+    towards = 1 if column > state.ix else -1
+    columns = range(state.ix, column + towards, towards)[1:]
+    return [state._replace(ix=ix) for ix in columns]
