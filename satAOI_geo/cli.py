@@ -64,7 +64,7 @@ class DefaultRun(click.RichGroup):
     """A group whose command `run` may be left out: `satAOI-geo PLAN` is `satAOI-geo run PLAN`."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Put `run` in front of arguments that name no command; without arguments, show the help."""
+        """Put `run` in front of arguments that name no command; without any, show the help."""
         own_words = {*self.commands, *ctx.help_option_names, "--version"}
         if not args:
             args = ["--help"]
@@ -87,9 +87,9 @@ def point(
     return x, y
 
 
-def direction(context: click.Context, parameter: click.Parameter, text: str) -> float | None:
+def direction(context: click.Context, parameter: click.Parameter, text: str | None) -> float | None:
     """The lattice's direction in degrees; None to find it."""
-    if text == "auto":
+    if text is None or text == "auto":
         return None
     try:
         return 0.0 if text == "none" else float(text)
@@ -211,8 +211,7 @@ def commands() -> None:
 @click.option(
     "--align",
     metavar="DEG|auto|none",
-    default="auto",
-    show_default=True,
+    show_default="auto",
     callback=direction,
     help="Direction of the disc positions' rows in the drawing: that of most of the walls, along "
     "the drawing's axes, or an angle in degrees, e.g. --align 33.3",
@@ -270,37 +269,37 @@ def run(  # noqa: PLR0913  one parameter an option
 
     Without --output, --report and --raster the figures are printed and nothing is written.
     """
-    from satAOI_adapters import read_plan
+    from satAOI_adapters import kernel_cache, read_plan
     from satAOI_adapters.dxf_read import ReadOptions
     from satAOI_adapters.robot_read import robot_from
-    from satAOI_adapters.terminal import progress
+    from satAOI_adapters.terminal import progress, say_note
+
+    compiled = kernel_cache.prepare()
+    from satAOI_geo.pipeline import area_of_interest
+    from satAOI_geo.search import Settings
+    from satAOI_geo.start import StartMark
 
     outputs = Outputs(drawing=output, report=report, raster=raster)
     refuse_early(outputs, read=[plan, Path(robot), *([layers] if layers else [])])
     chosen_robot = robot_from(robot)
-    announce_compilation(quiet=quiet)
-    from satAOI_geo.pipeline import area_of_interest
-    from satAOI_geo.start import StartMark
-
+    settings = Settings(
+        connectivity=connectivity,
+        step_mm=step,
+        n_directions=directions,
+        clearance_mm=clearance,
+        align_rad=None if align is None else math.radians(align),
+        engine=engine,
+        exact_outline=exact_outline,
+    )
     floor_plan = read_plan(plan, ReadOptions(units=units, layers=layers))
     mark = None
     if start is not None:
         x_mm, y_mm = floor_plan.frame.to_local_mm(start).tolist()
         mark = StartMark((x_mm, y_mm))
+    if not (compiled or quiet):
+        say_note("first run of this version: compiling takes some seconds, once")
     with progress(quiet=quiet) as told:
-        result = area_of_interest(
-            floor_plan,
-            chosen_robot,
-            start=mark,
-            connectivity=connectivity,
-            step_mm=step,
-            n_directions=directions,
-            clearance_mm=clearance,
-            align_rad=None if align is None else math.radians(align),
-            engine=engine,
-            exact_outline=exact_outline,
-            progress=told,
-        )
+        result = area_of_interest(floor_plan, chosen_robot, settings, start=mark, progress=told)
     write(result, outputs)
     tell(result, outputs, quiet=quiet)
     return FINDINGS if strict and result.report.findings else DONE
@@ -325,15 +324,6 @@ def refuse_early(outputs: Outputs, *, read: list[Path]) -> None:
         if path.absolute() in written:
             raise InputError(f"'{path}' is asked for twice; give each output a name of its own")
         written.append(path.absolute())
-
-
-def announce_compilation(*, quiet: bool) -> None:
-    """Say why the first run takes longer."""
-    from satAOI_adapters import kernel_cache
-    from satAOI_adapters.terminal import say_note
-
-    if not kernel_cache.prepare() and not quiet:
-        say_note("first run of this version: compiling takes some seconds, once")
 
 
 def write(result: "Result", outputs: Outputs) -> None:

@@ -29,7 +29,8 @@ def lines_of(report: Report) -> list[tuple[str, str]]:
     floor, aoi, start = report.floor, report.aoi, report.start
     x_mm, y_mm = start.xy_mm
     obstacles = f"{floor.obstacle_percent:.1f} % of the floor, {floor.n_obstacles} pieces"
-    share = f"{aoi.percent_of_free:.1f} % of the free floor, {aoi.n_parts} parts"
+    parts = "1 part" if aoi.n_parts == 1 else f"{aoi.n_parts} parts"
+    share = f"{aoi.percent_of_free:.1f} % of the free floor, {parts}"
     return [
         ("floor", f"{floor.area_m2:.2f} m² ({floor.source})"),
         ("obstacles", f"{floor.obstacle_area_m2:.2f} m² ({obstacles})"),
