@@ -1,0 +1,288 @@
+"""Connected sets against the slow search, and the doors the robot does and does not fit through."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from shapely.geometry import LineString, box
+
+from satAOI_geo.collision import Collider, Reference
+from satAOI_geo.discs import covered_cells
+from satAOI_geo.freespace import FreeSpace, free_space
+from satAOI_geo.intervals import Intervals
+from satAOI_geo.lattice import Lattice
+from satAOI_geo.plan import Circle, FloorPlan
+from satAOI_geo.reach import DiscComponents, PoseComponents
+from satAOI_geo.robot import ROBOTS, Robot
+from satAOI_geo.units import MM2_PER_M2
+from tests import drawn, plans
+from tests.oracle import Node, Oracle, State, flooded
+
+PROTOTYPE = ROBOTS["magicbim"]
+
+
+def searched(
+    plan: FloorPlan, robot: Robot, lattice: Lattice, clearance_mm: float = 0.0
+) -> tuple[FreeSpace, PoseComponents]:
+    engine = Intervals(plan, robot, lattice, clearance_mm)
+    space = free_space(engine, robot, lattice)
+    return space, PoseComponents.of(engine, robot, space)
+
+
+def numbered(lattice: Lattice, state: State) -> tuple[int, int, int, int]:
+    """The same state with the number of its swing for a2."""
+    iy, ix, a1, a2 = state
+    return iy, ix, a1, lattice.swings.index(a2)
+
+
+def assert_same_sets(
+    plan: FloorPlan, robot: Robot, lattice: Lattice, *, clearance_mm: float = 0.0
+) -> int:
+    """Every state is free in both or neither, and the sets are the same; how many sets."""
+    space, fast = searched(plan, robot, lattice, clearance_mm)
+    slow = Oracle(plan, robot, lattice, clearance_mm).partition()
+    assert space.n_states() == len(slow)
+    fast_label = {state: fast.at(*numbered(lattice, state)) for state in slow}
+    assert None not in fast_label.values()
+    # one to one: no set of either meets two sets of the other
+    pairs = set(zip(slow.values(), fast_label.values(), strict=True))
+    assert len(pairs) == len(set(slow.values())) == len(fast.boxes)
+    return len(pairs)
+
+
+SMALL = [
+    # seed of the plan, step, directions, clearance
+    (11, 120.0, 8, 0.0),
+    (12, 100.0, 8, 0.0),
+    (13, 120.0, 12, 0.0),
+    (14, 90.0, 8, 35.0),
+    (15, 130.0, 12, 0.0),
+    (16, 60.0, 4, 0.0),
+    (17, 110.0, 8, 10.0),
+    (18, 150.0, 12, 0.0),
+    (19, 120.0, 8, 0.0),
+    (20, 100.0, 4, 0.0),
+    (21, 140.0, 12, 0.0),
+    (22, 120.0, 8, 0.0),
+    (23, 180.0, 16, 0.0),
+    (24, 130.0, 8, 0.0),
+    (25, 70.0, 4, 35.0),
+    (26, 150.0, 12, 0.0),
+]
+
+
+@pytest.mark.parametrize(("seed", "step_mm", "n_directions", "clearance_mm"), SMALL)
+def test_pose_connected_sets_are_those_of_the_slow_search(
+    seed: int, step_mm: float, n_directions: int, clearance_mm: float
+) -> None:
+    plan = plans.random_plan(seed, n_obstacles=5, side_mm=(2500, 3500))
+    lattice = Lattice.over(
+        plan.floor.bounds, PROTOTYPE, step_mm=step_mm, n_directions=n_directions
+    )
+    assert_same_sets(plan, PROTOTYPE, lattice, clearance_mm=clearance_mm)
+
+
+ODD_ROBOTS = {
+    "pivot_outside": replace(PROTOTYPE, vehicle_length_mm=400.0, pivot_offset_mm=-333.0),
+    "asymmetric_swing": replace(
+        PROTOTYPE, swing_min_rad=math.radians(-100), swing_max_rad=math.radians(31)
+    ),
+    "full_turn_of_swing": replace(
+        PROTOTYPE,
+        vehicle_length_mm=500.0,
+        vehicle_width_mm=300.0,
+        swing_min_rad=-math.pi,
+        swing_max_rad=math.pi,
+    ),
+    "stiff_arm": replace(PROTOTYPE, swing_min_rad=0.0, swing_max_rad=0.0),
+    "arm_all_disc": replace(PROTOTYPE, arm_length_mm=350.0, vehicle_length_mm=300.0),
+}
+
+
+@pytest.mark.parametrize("robot", ODD_ROBOTS.values(), ids=ODD_ROBOTS)
+@pytest.mark.parametrize("seed", [31, 32])
+def test_pose_connected_sets_of_odd_robots_are_those_of_the_slow_search(
+    robot: Robot, seed: int
+) -> None:
+    plan = plans.random_plan(seed, n_obstacles=4, side_mm=(2500, 3500))
+    lattice = Lattice.over(plan.floor.bounds, robot, step_mm=150.0, n_directions=8)
+    assert_same_sets(plan, robot, lattice)
+
+
+@pytest.mark.parametrize("name", ["triangles_that_touch", "floor_in_two_parts", "spiral"])
+def test_pose_connected_sets_of_hard_plans_are_those_of_the_slow_search(name: str) -> None:
+    plan = drawn.HARD[name]
+    lattice = Lattice.over(plan.floor.bounds, PROTOTYPE, step_mm=150.0, n_directions=8)
+    assert assert_same_sets(plan, PROTOTYPE, lattice) > 1
+
+
+def test_slow_engine_finds_the_same_sets() -> None:
+    plan = drawn.HARD["triangles_that_touch"]
+    lattice = Lattice.over(plan.floor.bounds, PROTOTYPE, step_mm=250.0, n_directions=4)
+    space, fast = searched(plan, PROTOTYPE, lattice)
+    reference = Reference(Collider(plan, PROTOTYPE), lattice)
+    slow = PoseComponents.of(reference, PROTOTYPE, space)
+    assert np.array_equal(slow.labels, fast.labels)
+
+
+@pytest.mark.parametrize("seed", [41, 42, 43])
+def test_disc_connected_set_is_what_algorithm_2_reaches(seed: int) -> None:
+    plan = plans.random_plan(seed, n_obstacles=6, side_mm=(3000, 4500))
+    lattice = Lattice.over(plan.floor.bounds, PROTOTYPE, step_mm=200.0, n_directions=8)
+    collider = Collider(plan, PROTOTYPE)
+
+    def is_free(node: Node) -> bool:
+        poses = np.ndindex(lattice.n_directions, len(lattice.swings))
+        return any(collider.is_free(lattice.pose(*node, a1, swing)) for a1, swing in poses)
+
+    space = free_space(Intervals(plan, PROTOTYPE, lattice), PROTOTYPE, lattice)
+    discs = DiscComponents.of(space.free_nodes())
+    covered: set[Node] = set()
+    for label in range(len(discs.boxes)):
+        nodes = {(int(iy), int(ix)) for iy, ix in np.argwhere(discs.nodes(label))}
+        assert nodes == flooded(min(nodes), lattice.shape, is_free)
+        assert all(discs.at_node(*node) == [label] for node in nodes)
+        covered |= nodes
+    blocked = [node for node in np.ndindex(lattice.shape) if node not in covered]
+    assert not any(is_free(node) for node in blocked)
+    assert all(discs.at_node(*node) == [] for node in blocked)
+
+
+def test_disc_connected_nodes_touch_at_corners_too() -> None:
+    free = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 0], [1, 0, 1]], dtype=bool)
+    discs = DiscComponents.of(free)
+    assert discs.labels.tolist() == [[0, -1, -1], [-1, 0, -1], [-1, -1, -1], [1, -1, 2]]
+    assert discs.boxes.tolist() == [[0, 0, 1, 1], [3, 0, 3, 0], [3, 2, 3, 2]]
+
+
+def two_rooms_searched(opening_mm: float) -> tuple[Lattice, DiscComponents, PoseComponents]:
+    plan = plans.two_rooms(opening_mm).plan
+    lattice = Lattice.over(plan.floor.bounds, PROTOTYPE)
+    space, poses = searched(plan, PROTOTYPE, lattice)
+    return lattice, DiscComponents.of(space.free_nodes()), poses
+
+
+@pytest.mark.parametrize(
+    ("opening_mm", "disc_passes", "pose_passes"),
+    [
+        # Rows of nodes lie 5 mm off the middle of the opening, and contact is collision: the disc
+        # passes where 350 + 5 < opening / 2, the vehicle where 415 + 5 < opening / 2.
+        (690, False, False),
+        (710, False, False),
+        (720, True, False),
+        (760, True, False),
+        (800, True, False),
+        (840, True, False),
+        (850, True, True),
+        (900, True, True),
+    ],
+)
+def test_opening_lets_through_what_fits(
+    opening_mm: float, disc_passes: bool, pose_passes: bool
+) -> None:
+    lattice, discs, poses = two_rooms_searched(opening_mm)
+    start, beyond = lattice.nearest_node(1000.0, 2000.0), lattice.nearest_node(7200.0, 2000.0)
+    assert start is not None
+    assert beyond is not None
+    assert (discs.at_node(*start) == discs.at_node(*beyond)) is disc_passes
+
+    largest = max(poses.at_node(*start), key=lambda label: poses.nodes(label).sum())
+    assert (largest in poses.at_node(*beyond)) is pose_passes
+    # one room has 16 m²; through the opening the disc gets as far as the vehicle's nose lets it
+    covered = covered_cells(poses.nodes(largest), PROTOTYPE.disc_radius_mm / lattice.step_mm)
+    area_m2 = covered.sum() * lattice.step_mm**2 / MM2_PER_M2
+    low_m2, high_m2 = (31.5, 32.0) if pose_passes else (15.5, 17.2)
+    assert low_m2 < area_m2 < high_m2
+
+
+def test_robot_turned_in_a_narrow_room_stays_the_way_it_was_set_down() -> None:
+    # 1100 mm wide, 2600 mm long: the straight robot, 1924.5 mm from rim to front, stands either
+    # way along it, and the vehicle, 1206 mm from corner to corner, turns in it in neither
+    plan = FloorPlan(box(0, 0, 2600, 1100))
+    lattice = Lattice.over(plan.floor.bounds, PROTOTYPE)
+    _, poses = searched(plan, PROTOTYPE, lattice)
+    middle = lattice.n_rows // 2
+    straight = lattice.swings.index(0)
+    east = poses.at(middle, lattice.n_columns // 4, 0, straight)
+    west = poses.at(middle, lattice.n_columns * 3 // 4, 12, straight)
+    assert east is not None
+    assert west is not None
+    assert east != west
+
+
+def test_wall_of_no_width_between_two_nodes_parts_them() -> None:
+    # the robot of a wall-thin slot: both sides free for a small robot, the step across is not
+    robot = replace(
+        PROTOTYPE,
+        vehicle_length_mm=20.0,
+        vehicle_width_mm=20.0,
+        pivot_offset_mm=0.0,
+        arm_length_mm=60.0,
+        disc_radius_mm=20.0,
+    )
+    plan = drawn.plan_of(box(0, 0, 1000, 1000), LineString([(500, -10), (500, 1010)]))
+    lattice = Lattice.over(plan.floor.bounds, robot, step_mm=100.0, n_directions=4)
+    _, poses = searched(plan, robot, lattice)
+    north, straight = 1, lattice.swings.index(0)
+    left, right = poses.at(3, 4, north, straight), poses.at(3, 5, north, straight)
+    assert left is not None
+    assert right is not None
+    assert left != right
+
+
+def test_pole_thinner_than_the_move_parts_the_poses_on_its_sides() -> None:
+    # the disc of 20 mm steps 100 mm across a pole of 1 mm
+    robot = replace(
+        PROTOTYPE,
+        vehicle_length_mm=20.0,
+        vehicle_width_mm=20.0,
+        pivot_offset_mm=0.0,
+        arm_length_mm=60.0,
+        disc_radius_mm=20.0,
+    )
+    floor = box(0, 0, 200, 200)
+    lattice = Lattice.over(floor.bounds, robot, step_mm=100.0, n_directions=4)
+    straight = lattice.swings.index(0)
+    _, apart = searched(drawn.plan_of(floor, Circle(100.0, 50.0, 1.0)), robot, lattice)
+    _, together = searched(drawn.plan_of(floor), robot, lattice)
+    for poses, parted in ((apart, True), (together, False)):
+        left, right = poses.at(0, 0, 1, straight), poses.at(0, 1, 1, straight)
+        assert left is not None
+        assert right is not None
+        assert (left != right) is parted
+
+
+def test_floor_on_which_nothing_is_free_has_no_sets() -> None:
+    plan = FloorPlan(box(0, 0, 800, 800))
+    lattice = Lattice.over(plan.floor.bounds, PROTOTYPE)
+    space, poses = searched(plan, PROTOTYPE, lattice)
+    assert space.n_states() == 0
+    assert poses.boxes.shape == (0, 4)
+    assert poses.at_node(40, 40) == []
+    assert DiscComponents.of(space.free_nodes()).boxes.shape == (0, 4)
+
+
+@pytest.mark.parametrize("seed", [51, 52])
+def test_every_set_lies_in_its_box_and_touches_its_sides(seed: int) -> None:
+    plan = plans.random_plan(seed, n_obstacles=6, side_mm=(3000, 4500))
+    lattice = Lattice.over(plan.floor.bounds, PROTOTYPE, step_mm=50.0, n_directions=12)
+    space, poses = searched(plan, PROTOTYPE, lattice)
+    discs = DiscComponents.of(space.free_nodes())
+    for sets in (discs, poses):
+        for label, box_of in enumerate(sets.boxes):
+            rows, columns = np.nonzero(sets.nodes(label))
+            assert box_of.tolist() == [rows.min(), columns.min(), rows.max(), columns.max()]
+
+
+@pytest.mark.parametrize("seed", [51, 52])
+def test_sets_together_hold_every_free_state_once(seed: int) -> None:
+    plan = plans.random_plan(seed, n_obstacles=6, side_mm=(3000, 4500))
+    lattice = Lattice.over(plan.floor.bounds, PROTOTYPE, step_mm=50.0, n_directions=12)
+    space, poses = searched(plan, PROTOTYPE, lattice)
+    runs = poses.runs
+    assert (runs.end - runs.begin + 1).sum() == space.n_states()
+    gathered = [run for label in range(len(poses.boxes)) for run in poses.runs_of(label)]
+    assert sorted(gathered) == list(range(runs.begin.size))
+    nodes = [poses.nodes(label) for label in range(len(poses.boxes))]
+    assert np.array_equal(np.any(nodes, axis=0), space.free_nodes())
