@@ -32,9 +32,13 @@ if TYPE_CHECKING:
     from satAOI_geo.lattice import Lattice
     from satAOI_geo.pipeline import Result, area_of_interest
     from satAOI_geo.plan import Circle, Finding, FloorPlan, Frame, Kind, Obstacle, Source
+    from satAOI_geo.reasons import Patch, Reason
     from satAOI_geo.report import Report
     from satAOI_geo.robot import ROBOTS, Pose, Robot
+    from satAOI_geo.search import Search, Settings
+    from satAOI_geo.start import Start, StartMark
     from satAOI_geo.units import MM_PER_UNIT
+    from satAOI_geo.zones import SetDown, Zone
 
 __version__ = "0.1.0"
 
@@ -75,6 +79,10 @@ _NAMES_OF_MODULE = {
     "plan": {"FloorPlan", "Obstacle", "Kind", "Circle", "Finding", "Frame", "Source"},
     "robot": {"Robot", "Pose", "ROBOTS"},
     "lattice": {"Lattice"},
+    "search": {"Search", "Settings"},
+    "start": {"Start", "StartMark"},
+    "zones": {"Zone", "SetDown"},
+    "reasons": {"Patch", "Reason"},
     "aoi": {"Aoi", "Outline", "Loop"},
     "report": {"Report"},
     "units": {"MM_PER_UNIT"},

@@ -4,7 +4,7 @@ import shapely
 from shapely.geometry import Point
 
 from satAOI_geo.pipeline import Result
-from satAOI_geo.reasons import SENTENCES, Patch
+from satAOI_geo.reasons import NARROW_CELLS, SENTENCES, Patch
 from satAOI_geo.units import MM2_PER_M2
 
 
@@ -28,8 +28,8 @@ def _reason(patch: Patch) -> str:
     size = f"{patch.area_mm2 / MM2_PER_M2:.2f} m²"
     if patch.narrow:
         return (
-            f"it is in a strip narrower than a lattice cell ({size} of such strips in all), where "
-            f"{SENTENCES[patch.reason]}"
+            f"it is in a strip beside a wall, narrower than {NARROW_CELLS} lattice "
+            f"cells ({size} of them in all): the disc's positions are a cell apart"
         )
     near = f"; nearest to it is {patch.blocker.label()}" if patch.blocker else ""
     return f"{SENTENCES[patch.reason]} (a patch of {size}{near})"

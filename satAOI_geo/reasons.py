@@ -9,6 +9,7 @@ What lies between two of them has one reason, and all of them together are the f
 area of interest leaves over.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import reduce
@@ -16,7 +17,7 @@ from typing import Final
 
 import numpy as np
 import shapely
-from shapely.geometry import MultiPolygon, Point
+from shapely.geometry import MultiPolygon, Point, Polygon
 
 from satAOI_geo.aoi import Aoi, area
 from satAOI_geo.freespace import Engine
@@ -26,6 +27,10 @@ from satAOI_geo.robot import Robot
 
 SAGITTA_MM: Final = 0.01
 """How far the polygons of patches may leave the arcs they share with the area of interest."""
+
+
+NARROW_CELLS: Final = 2
+"""Between the disc and a wall the lattice leaves strips of up to a cell, askew to it 1.4 cells."""
 
 
 class Reason(StrEnum):
@@ -49,14 +54,14 @@ SENTENCES: Final = {
 
 @dataclass(frozen=True, slots=True)
 class Patch:
-    """A connected piece of free floor that is not reached.
+    """A connected piece of free floor that is not reached, or all strips of it.
 
     Attributes:
         region: Its shape in the plan's frame.
         reason: Why it is not reached.
         label_mm: A point inside it, for its label.
-        narrow: Whether it gathers strips narrower than a lattice cell, which the lattice cannot
-            resolve; its region then has many parts.
+        narrow: Whether it gathers the strips narrower than `NARROW_CELLS`, which the lattice does
+            not resolve; its region then has many parts.
         blocker: The obstacle nearest to the label where one is in the way, else None.
     """
 
@@ -98,27 +103,57 @@ def unreached(
 
     Returns:
         Patches whose areas and the area of interest add up to the free floor. Strips narrower
-        than a cell are gathered, one patch a reason, at the end.
+        than `NARROW_CELLS`, which finer steps of the disc would cover in part, and crumbs smaller
+        than a cell are gathered in one patch at the end.
     """
     rest = as_region(plan.free_region().difference(_region(aoi)))
+    covered = {
+        reason: _region(area(nodes, lattice, robot.disc_radius_mm))
+        for reason, nodes in wider.items()
+    }
+    blockers = _Blockers(plan)
+    broad = _opened(rest, NARROW_CELLS * lattice.step_mm)
+    pieces = [
+        (reason, piece)
+        for part in polygons_in([broad])
+        for reason, piece in _split(part, covered, lattice.step_mm)
+    ]
+    crumb_mm2 = lattice.step_mm**2
+    patches = [blockers.patch(piece, reason) for reason, piece in pieces if piece.area >= crumb_mm2]
+    patches.sort(key=lambda patch: (-patch.area_mm2, patch.label_mm))
+    crumbs = [piece for _, piece in pieces if piece.area < crumb_mm2]
+    strips = as_region(shapely.union_all([rest.difference(broad), *crumbs]))
+    if strips.area > 0:
+        patches.append(blockers.patch(strips, Reason.DISC, narrow=True))
+    return tuple(patches)
+
+
+def _split(
+    part: Polygon, covered: dict[Reason, Region], step_mm: float
+) -> Iterator[tuple[Reason, Polygon]]:
+    """The pieces of a part by their reasons.
+
+    Outlines of nested areas run along each other, a rounding apart: pieces narrower than a cell
+    go to the reason that most of the part has.
+    """
+    rest: Region = part
     by_reason: dict[Reason, Region] = {}
     for reason in reversed(Reason):
-        if reason in wider:
-            covered = _region(area(wider[reason], lattice, robot.disc_radius_mm))
-            by_reason[reason] = as_region(rest.intersection(covered))
-            rest = as_region(rest.difference(covered))
-        elif reason is Reason.DISC:
-            by_reason[reason] = rest
-    blockers = _Blockers(plan)
-    wide: list[Patch] = []
-    narrow: list[Patch] = []
-    for reason, region in by_reason.items():
-        broad = _opened(region, lattice.step_mm)
-        wide.extend(blockers.patch(part, reason) for part in polygons_in([broad]))
-        strips = as_region(region.difference(broad))
-        if strips.area > 0:
-            narrow.append(blockers.patch(strips, reason, narrow=True))
-    return (*sorted(wide, key=_order), *sorted(narrow, key=_order))
+        if reason in covered:
+            by_reason[reason] = as_region(rest.intersection(covered[reason]))
+            rest = as_region(rest.difference(covered[reason]))
+    by_reason[Reason.DISC] = rest
+    most = max(by_reason, key=lambda reason: by_reason[reason].area)
+    others = [
+        (reason, piece)
+        for reason, region in by_reason.items()
+        if reason is not most
+        for piece in polygons_in([region])
+        if not piece.buffer(-step_mm / 2).is_empty
+    ]
+    yield from others
+    left = part.difference(shapely.union_all([piece for _, piece in others])) if others else part
+    yield from ((most, piece) for piece in polygons_in([left]))
 
 
 class _Blockers:
@@ -155,8 +190,3 @@ def _opened(region: Region, width_mm: float) -> Region:
     """What is left of a region without its parts narrower than a width."""
     shrunk = region.buffer(-width_mm / 2, join_style="mitre")
     return as_region(shrunk.buffer(width_mm / 2, join_style="mitre").intersection(region))
-
-
-def _order(patch: Patch) -> tuple[float, tuple[float, float]]:
-    """Largest first, then by position."""
-    return -patch.area_mm2, patch.label_mm

@@ -131,7 +131,7 @@ class SetDownFigures(Section):
 
 
 class PatchFigures(Section):
-    """Free floor that is not reached; narrow gathers strips narrower than a lattice cell."""
+    """Free floor that is not reached; narrow gathers the strips narrower than two cells."""
 
     reason: Literal["disc", "arm", "vehicle", "zone", "path"]
     area_m2: float

@@ -85,7 +85,6 @@ class RouteMap:
         Raises:
             NoRouteError: If no state of the start's component covers the point.
         """
-        runs, lattice = self._search.pose.runs, self._search.lattice
         begin, end = self._covering_columns(at_mm)
         reaching = np.flatnonzero(begin <= end)
         if not reaching.size:
@@ -111,7 +110,7 @@ class RouteMap:
             state = self._state(next_run, column)
             states.append(state)
         states.extend(_walk(state, min(max(state.ix, int(begin[goal])), int(end[goal]))))
-        return Route(lattice, tuple(states))
+        return Route(self._search.lattice, tuple(states))
 
     def _links(self) -> npt.NDArray[np.int64]:
         """What links the component's runs, both ways: a run, another, a column; shape (n, 3)."""
