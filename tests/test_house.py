@@ -79,6 +79,10 @@ def test_every_public_name_is_there(name: str) -> None:
     assert name in dir(satAOI_geo)
 
 
+def test_no_public_name_is_hidden_by_a_module_of_the_same_name() -> None:
+    assert not {file.stem for file in CORE.glob("*.py")} & set(satAOI_geo.__all__)
+
+
 def test_every_public_name_is_also_known_to_type_checkers() -> None:
     tree = ast.parse((CORE / "__init__.py").read_text(encoding="utf-8"))
     imported = {
