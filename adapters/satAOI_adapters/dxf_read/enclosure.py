@@ -1,0 +1,180 @@
+"""What walls enclose when the openings in them are closed: the floor of a plan that draws none.
+
+Points along the walls are triangulated. From outside, the triangles are flooded over sides longer
+than an opening; what stays dry is enclosed, and the sides at the water's edge close the openings.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import Delaunay
+from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from satAOI_adapters.dxf_read.linework import is_thin
+from satAOI_adapters.dxf_read.shapes import rounded
+from satAOI_geo.plan import FloatArray, Region, as_region, polygons_in
+
+OPENING_MM: Final = 2500.0
+"""Widest opening in the outer walls that does not let the floor leak out: a double door."""
+
+OPENING_STEPS_MM: Final = (1000.0, 1500.0, 2000.0, OPENING_MM)
+"""Openings are closed from narrow to wide, so that each is closed where it is narrowest."""
+
+SAMPLE_MM: Final = 100.0
+"""Distance of the points that stand for a wall when openings are looked for."""
+
+MAX_SAMPLES: Final = 200_000
+"""Points for all walls together; long drawings get coarser ones."""
+
+ON_LINE_MM: Final = 1e-3
+"""A line this close to a wall runs along it."""
+
+DEEP: Final = 4.0
+"""A space this many times as large as the square on its mouth is a passage, not a niche."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """A Delaunay triangulation of points on the walls.
+
+    Every way between two walls crosses a side of a triangle hardly longer than the way is wide,
+    and sides along a wall are short: what cannot be reached over long sides is enclosed.
+
+    Attributes:
+        points: Shape (n, 2).
+        neighbours: Triangle beyond each side, -1 for none, shape (triangles, 3).
+        sides: Corners of each triangle's three sides, shape (triangles, 3, 2).
+    """
+
+    points: FloatArray
+    neighbours: npt.NDArray[np.int32]
+    sides: npt.NDArray[np.int32]
+
+    @classmethod
+    def over(cls, points: FloatArray) -> "Mesh":
+        """The triangulation of points that do not all lie on one line."""
+        delaunay = Delaunay(points)
+        corners = delaunay.simplices
+        # side k lies opposite corner k, as neighbour k does
+        sides = np.stack((corners[:, (1, 2)], corners[:, (2, 0)], corners[:, (0, 1)]), axis=1)
+        return cls(points, delaunay.neighbors, sides)
+
+    def outside(self, opening_mm: float) -> npt.NDArray[np.bool_]:
+        """The triangles that are reached from far away over sides longer than an opening."""
+        start, end = self.points[self.sides[..., 0]], self.points[self.sides[..., 1]]
+        lengths_mm = np.hypot(*np.moveaxis(end - start, -1, 0))
+        # across an opening the nearest two samples may be offset by half their spacing
+        widest_mm = np.hypot(opening_mm, SAMPLE_MM / 2)
+        triangles, corners = np.nonzero(lengths_mm > widest_mm)
+        # a side without a neighbour borders on the outside, which is node n
+        n = len(self.sides)
+        beyond = self.neighbours[triangles, corners]
+        beyond = np.where(beyond < 0, n, beyond)
+        links = coo_array((np.ones(len(beyond)), (triangles, beyond)), shape=(n + 1, n + 1))
+        _, component = connected_components(links, directed=False)
+        return np.asarray(component[:n] == component[n])
+
+    def rim(self, outside: npt.NDArray[np.bool_]) -> npt.NDArray[np.object_]:
+        """The sides between triangles outside and inside, as lines."""
+        beyond_is_outside = (self.neighbours < 0) | outside[self.neighbours]
+        triangles, corners = np.nonzero(~outside[:, np.newaxis] & beyond_is_outside)
+        return np.asarray(shapely.linestrings(self.points[self.sides[triangles, corners]]))
+
+    def dry_share(
+        self, faces: Sequence[Polygon], outside: npt.NDArray[np.bool_]
+    ) -> npt.NDArray[np.float64]:
+        """Which share of each face stays dry, judged by the triangles centred in it."""
+        corners = self.points[self.sides[:, :, 0]]
+        first, second, third = np.moveaxis(corners, 1, 0)
+        along, across = second - first, third - first
+        areas_mm2 = np.abs(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]) / 2
+        centres = shapely.points(corners.mean(axis=1))
+        triangles, owners = shapely.STRtree(faces).query(centres, predicate="within")
+        n = len(faces)
+        total_mm2 = np.bincount(owners, areas_mm2[triangles], n)
+        dry_mm2 = np.bincount(owners, (areas_mm2 * ~outside)[triangles], n)
+        return np.divide(dry_mm2, total_mm2, out=np.zeros(n), where=total_mm2 > 0)
+
+
+def enclosed(bounds: Sequence[BaseGeometry]) -> Region:
+    """What walls and lines enclose when openings of up to `OPENING_MM` are closed.
+
+    The result runs along the walls' outer faces, corner by corner, and straight across each
+    opening at its narrowest place. Walls that enclose nothing are left out.
+
+    Args:
+        bounds: Polygons and lines that bound the floor.
+
+    Returns:
+        The floor; empty where nothing is enclosed.
+    """
+    edges = [bound.boundary if isinstance(bound, Polygon) else bound for bound in bounds]
+    walls = shapely.union_all(edges)
+    if walls.is_empty:
+        return MultiPolygon()
+    samples = _samples(walls)
+    if len(samples) < 3 or np.linalg.matrix_rank(samples - samples[0]) < 2:
+        return MultiPolygon()
+    mesh = Mesh.over(samples)
+    found: BaseGeometry = Polygon()
+    for opening_mm in OPENING_STEPS_MM:
+        faces = _dry_faces(mesh, shapely.union_all([walls, found.boundary]), opening_mm)
+        found = shapely.union_all([found, *faces])
+    filled = shapely.union_all([bound for bound in bounds if isinstance(bound, Polygon)])
+    return _with_rooms(found, filled)
+
+
+def _samples(walls: BaseGeometry) -> FloatArray:
+    """Points along the walls, corners included, each once."""
+    spacing_mm = max(SAMPLE_MM, walls.length / MAX_SAMPLES)
+    points = shapely.get_coordinates(shapely.segmentize(walls, spacing_mm))
+    return np.unique(points, axis=0)
+
+
+def _dry_faces(mesh: Mesh, walls: BaseGeometry, opening_mm: float) -> list[Polygon]:
+    """The faces between walls that openings of this width do not connect with the outside."""
+    outside = mesh.outside(opening_mm)
+    rim = mesh.rim(outside)
+    shapely.prepare(walls)
+    middles = shapely.line_interpolate_point(rim, 0.5, normalized=True)
+    seals = rim[~shapely.dwithin(middles, walls, ON_LINE_MM)]
+    noded = shapely.union_all([walls, *seals])
+    faces = rounded(polygons_in(shapely.polygonize([noded]).geoms))
+    if not faces:
+        return []
+    tree = shapely.STRtree(seals)
+    dry = mesh.dry_share(faces, outside)
+    return [
+        face
+        for face, share in zip(faces, dry, strict=True)
+        if share > 0.5 and not _is_niche(face, tree)
+    ]
+
+
+def _is_niche(face: Polygon, seals: shapely.STRtree) -> bool:
+    """Whether a face is a niche of the outside: neither wider than its mouth nor deep."""
+    rim = face.boundary
+    near = seals.geometries[seals.query(rim, predicate="dwithin", distance=ON_LINE_MM)]
+    mouths_mm = [mouth.length for mouth in near if rim.distance(mouth.centroid) <= ON_LINE_MM]
+    if not mouths_mm:
+        return False
+    widest_mm = max(mouths_mm)
+    return face.area < DEEP * widest_mm**2 and is_thin(face, widest_mm)
+
+
+def _with_rooms(found: BaseGeometry, filled: BaseGeometry) -> Region:
+    """Whole outlines around what is enclosed; parts that are nothing but wall are left out."""
+    parts = [Polygon(part.exterior) for part in polygons_in([found])]
+    rooms = [
+        part
+        for part in parts
+        if not all(is_thin(space) for space in polygons_in([part.difference(filled)]))
+    ]
+    return as_region(shapely.union_all(rounded(rooms)))

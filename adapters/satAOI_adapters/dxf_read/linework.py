@@ -1,0 +1,194 @@
+"""Loose lines as a network: ends joined over small gaps, and the faces that lines enclose.
+
+Nothing here moves an obstacle. The joined copies serve to find what is enclosed; the lines
+themselves stay where they were drawn.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import shapely
+from scipy.spatial import cKDTree
+from shapely.geometry import LineString, Polygon
+from shapely.geometry import Point as Spot
+
+from satAOI_adapters.dxf_read.curves import Point
+from satAOI_adapters.dxf_read.shapes import rounded
+from satAOI_geo.plan import polygons_in
+
+GAP_MM: Final = 1.0
+"""Ends this close belong together: no draughtsman leaves a gap of a millimetre on purpose."""
+
+NEAR_MISS_MM: Final = 50.0
+"""Ends this close were perhaps meant to meet: reported, left open."""
+
+OVERSHOOT_MM: Final = 0.01
+"""How far an end is led beyond the line it should meet, so that the two surely cross."""
+
+WALL_MM: Final = 700.0
+"""Widest space between lines of a wall layer that is taken as the inside of a wall.
+
+Few walls are thicker, and a room narrower than this takes in no robot of a usual size.
+"""
+
+PARALLEL: Final = 0.02
+"""Greatest sine of the angle between the two faces of one wall, about one degree."""
+
+SQUARE: Final = 0.85
+"""Greatest cosine of the angle between a wall and its end: 32° to 148°."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Two line ends, or an end and a line, that do not meet."""
+
+    start: Point
+    end: Point
+
+    @property
+    def width_mm(self) -> float:
+        """How far they are apart."""
+        return math.dist(self.start, self.end)
+
+
+@dataclass(frozen=True, slots=True)
+class Network:
+    """Lines that may be cut into faces.
+
+    Attributes:
+        lines: The lines with their joints.
+        loose: Ends at which nothing else begins, each with the direction out of its line.
+        n_joined: Gaps that were closed.
+        gaps: Gaps that were left, up to `NEAR_MISS_MM` wide.
+    """
+
+    lines: tuple[LineString, ...]
+    loose: tuple[tuple[Point, Point], ...]
+    n_joined: int
+    gaps: tuple[Gap, ...]
+
+    def faces(self) -> list[Polygon]:
+        """What the lines enclose, cut wherever they cross."""
+        if not self.lines:
+            return []
+        noded = shapely.union_all(list(self.lines))
+        return rounded(polygons_in(shapely.polygonize([noded]).geoms))
+
+
+def network(lines: Sequence[LineString], gap_mm: float = GAP_MM) -> Network:
+    """Join line ends that are at most `gap_mm` from another end or another line."""
+    if not lines:
+        return Network((), (), 0, ())
+    tree = shapely.STRtree(lines)
+    joints: list[LineString] = []
+    loose: list[tuple[Point, Point]] = []
+    gaps: list[Gap] = []
+    n_joined = 0
+    for owner, end, outwards in _ends(lines):
+        foot = _nearest(tree, lines, owner, end, max(gap_mm, NEAR_MISS_MM))
+        width_mm = math.inf if foot is None else math.dist(end, foot)
+        if foot is not None and width_mm <= gap_mm:
+            joints.append(_joint(end, foot, outwards))
+            n_joined += width_mm > OVERSHOOT_MM
+            continue
+        loose.append((end, outwards))
+        if foot is not None and width_mm <= NEAR_MISS_MM:
+            gaps.append(Gap(end, foot))
+    return Network((*lines, *joints), tuple(loose), n_joined, _without_twins(gaps))
+
+
+def with_wall_ends(joined: Network) -> Network:
+    """Close the ends of walls that are drawn as two open lines.
+
+    Two loose ends are the two faces of one wall when their lines are parallel, point the same
+    way, and the ends lie across, no farther apart than `WALL_MM`; nearest pairs first.
+    """
+    if len(joined.loose) < 2:
+        return joined
+    tree = cKDTree([end for end, _ in joined.loose])
+    pairs = sorted(
+        (math.dist(joined.loose[i][0], joined.loose[j][0]), i, j)
+        for i, j in tree.query_pairs(WALL_MM)
+    )
+    caps: list[LineString] = []
+    capped: set[int] = set()
+    for _, i, j in pairs:
+        if not {i, j} & capped and _are_faces(joined.loose[i], joined.loose[j]):
+            caps.append(LineString((joined.loose[i][0], joined.loose[j][0])))
+            capped |= {i, j}
+    loose = tuple(end for k, end in enumerate(joined.loose) if k not in capped)
+    return Network((*joined.lines, *caps), loose, joined.n_joined, joined.gaps)
+
+
+def is_thin(polygon: Polygon, width_mm: float = WALL_MM) -> bool:
+    """Whether no disc of this diameter fits into a polygon."""
+    return bool(polygon.buffer(-width_mm / 2).is_empty)
+
+
+def _ends(lines: Sequence[LineString]) -> list[tuple[int, Point, Point]]:
+    """The ends at which no other line has a corner: owner, place and direction out of the line."""
+    corners: dict[Point, int] = {}
+    for line in lines:
+        for corner in set(line.coords):
+            corners[corner] = corners.get(corner, 0) + 1
+    found = []
+    for owner, line in enumerate(lines):
+        points = line.coords
+        if points[0] == points[-1]:
+            continue
+        for end, before in ((points[0], points[1]), (points[-1], points[-2])):
+            if corners[end] == 1:
+                found.append((owner, end, _direction(before, end)))
+    return found
+
+
+def _nearest(
+    tree: shapely.STRtree, lines: Sequence[LineString], owner: int, end: Point, within_mm: float
+) -> Point | None:
+    """The point of the other lines nearest to an end; a corner there if one is hardly farther."""
+    spot = Spot(end)
+    near = [i for i in tree.query(spot, predicate="dwithin", distance=within_mm) if i != owner]
+    own = lines[owner].coords
+    other_end = own[-1] if own[0] == end else own[0]
+    feet = (
+        [other_end] if math.dist(other_end, end) <= min(within_mm, lines[owner].length / 2) else []
+    )
+    if near:
+        line = min((lines[i] for i in near), key=spot.distance)
+        on_line = line.interpolate(line.project(spot))
+        corner = min(line.coords, key=lambda corner: math.dist(corner, end))
+        is_corner = math.dist(corner, end) <= spot.distance(on_line) + GAP_MM
+        feet.append(corner if is_corner else (on_line.x, on_line.y))
+    return min(feet, key=lambda foot: math.dist(foot, end), default=None)
+
+
+def _joint(end: Point, foot: Point, outwards: Point) -> LineString:
+    """A short line from an end through the place where it should meet another."""
+    length_mm = math.dist(end, foot)
+    ahead = outwards if length_mm < 1e-9 else _direction(end, foot)
+    beyond = (foot[0] + OVERSHOOT_MM * ahead[0], foot[1] + OVERSHOOT_MM * ahead[1])
+    return LineString((end, foot, beyond) if length_mm else (end, beyond))
+
+
+def _are_faces(one: tuple[Point, Point], other: tuple[Point, Point]) -> bool:
+    (end, out), (other_end, other_out) = one, other
+    if end == other_end:
+        return False
+    across = _direction(end, other_end)
+    sine = out[0] * other_out[1] - out[1] * other_out[0]
+    cosine = out[0] * other_out[0] + out[1] * other_out[1]
+    lean = abs(across[0] * out[0] + across[1] * out[1])
+    return cosine > 0 and abs(sine) <= PARALLEL and lean <= SQUARE
+
+
+def _direction(start: Point, end: Point) -> Point:
+    length_mm = math.dist(start, end)
+    return (end[0] - start[0]) / length_mm, (end[1] - start[1]) / length_mm
+
+
+def _without_twins(gaps: Sequence[Gap]) -> tuple[Gap, ...]:
+    """Each gap once, though it is seen from both of its ends."""
+    kept = {frozenset((gap.start, gap.end)): gap for gap in reversed(gaps)}
+    return tuple(reversed(kept.values()))

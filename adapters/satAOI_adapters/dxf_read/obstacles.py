@@ -1,0 +1,219 @@
+"""Features as obstacles: solids by kind, walls from whatever draughtsmen draw as walls."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import shapely
+from shapely.geometry import LineString, Polygon
+
+from satAOI_adapters.dxf_read.curves import Path
+from satAOI_adapters.dxf_read.entities import Feature
+from satAOI_adapters.dxf_read.linework import (
+    GAP_MM,
+    WALL_MM,
+    Network,
+    is_thin,
+    network,
+    with_wall_ends,
+)
+from satAOI_adapters.dxf_read.shapes import (
+    band,
+    even_odd,
+    middle_line,
+    rounded,
+    shapes_of,
+    slivers,
+    traces,
+)
+from satAOI_geo.plan import Circle, Finding, Frame, Kind, Obstacle, Shape, polygons_in
+
+COVERED_MM: float = 1e-3
+"""A line this close to a solid adds nothing to it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """What stands on the floor, and what is to be said about it."""
+
+    obstacles: tuple[Obstacle, ...]
+    findings: tuple[Finding, ...] = ()
+
+
+def solids(features: Sequence[Feature], kind: Kind, frame: Frame) -> Standing:
+    """Columns, holes and the like: what is drawn closed, or as lines that close, is solid."""
+    obstacles: list[Obstacle] = []
+    open_paths: defaultdict[str, list[tuple[Path, Feature]]] = defaultdict(list)
+    for feature in features:
+        if feature.is_area or feature.width_mm:
+            obstacles.extend(_obstacles(area_of(feature), kind, feature))
+            continue
+        for path in feature.paths:
+            if path.closed:
+                obstacles.extend(_obstacles(shapes_of(path), kind, feature))
+            else:
+                open_paths[feature.placed.layer].append((path, feature))
+    findings: list[Finding] = []
+    for layer, paths in open_paths.items():
+        standing = _loops(layer, paths, kind, frame)
+        obstacles.extend(standing.obstacles)
+        findings.extend(standing.findings)
+    return Standing(tuple(obstacles), tuple(findings))
+
+
+def walls(
+    features: Sequence[Feature],
+    columns: Sequence[Obstacle],
+    floor_edges: Sequence[LineString],
+    frame: Frame,
+) -> Standing:
+    """Walls from fills, bands, outlines and lines.
+
+    A closed outline no wider than a wall is solid. A wider one is the face of a wall around a
+    room, and only its line counts. The space between faces is filled where it is closed and
+    nowhere wider than a wall; a room never is.
+
+    Args:
+        features: What is drawn on wall layers.
+        columns: Obstacles that walls may end at.
+        floor_edges: Outlines of the floor, which may be the outer faces of walls.
+        frame: The plan's frame, for positions in findings.
+    """
+    obstacles: list[Obstacle] = []
+    lines: list[tuple[Path, Feature]] = []
+    wide: Counter[str] = Counter()
+    for feature in features:
+        if feature.is_area or feature.width_mm:
+            obstacles.extend(_obstacles(area_of(feature), Kind.WALL, feature))
+            continue
+        for path in feature.paths:
+            shapes = shapes_of(path) if path.closed else []
+            if shapes and all(_is_wall_thick(shape) for shape in shapes):
+                obstacles.extend(_obstacles(shapes, Kind.WALL, feature))
+            else:
+                wide[feature.placed.layer] += path.closed
+                lines.append((path, feature))
+    outlines = outlines_of([*obstacles, *columns])
+    joined = with_wall_ends(network([*(middle_line(path) for path, _ in lines), *outlines]))
+    if floor_edges:
+        joined = replace(joined, lines=network([*joined.lines, *floor_edges]).lines)
+    inside = _insides(joined.faces(), lines, obstacles) if lines else []
+    drawn = [o for path, feature in lines for o in _obstacles(traces(path), Kind.WALL, feature)]
+    findings = (*_wide_outlines(wide), *_filled(inside), *_gaps("wall", joined, frame))
+    return Standing((*obstacles, *drawn, *inside), findings)
+
+
+def area_of(feature: Feature) -> list[Shape]:
+    """What a fill or a line with a width covers; lines where it covers nothing."""
+    if feature.width_mm:
+        return [polygon for path in feature.paths for polygon in band(path, feature.width_mm)]
+    covered: list[Shape] = list(even_odd(feature.paths))
+    return covered or [trace for path in feature.paths for trace in traces(path)]
+
+
+def _loops(layer: str, paths: Sequence[tuple[Path, Feature]], kind: Kind, frame: Frame) -> Standing:
+    """Loose lines of one layer: what they enclose is solid, the rest are lines."""
+    joined = network([middle_line(path) for path, _ in paths])
+    faces = shapely.union_all(joined.faces())
+    # curves bulge out of the polygons that their chords enclose
+    bulges = [s for path, _ in paths for s in slivers(path) if s.intersects(faces)]
+    enclosed = rounded(polygons_in([shapely.union_all([faces, *bulges])]))
+    tree = shapely.STRtree([middle_line(path) for path, _ in paths])
+    obstacles = [
+        Obstacle(Polygon(face.exterior), kind, layer, paths[tree.nearest(face)][1].placed.handle)
+        for face in enclosed
+    ]
+    grown = shapely.union_all(enclosed).buffer(COVERED_MM)
+    for path, feature in paths:
+        if not grown.covers(middle_line(path)):
+            obstacles.extend(_obstacles(traces(path), kind, feature))
+    return Standing(tuple(obstacles), _gaps(layer, joined, frame))
+
+
+def _insides(
+    faces: Sequence[Polygon],
+    lines: Sequence[tuple[Path, Feature]],
+    solid_walls: Sequence[Obstacle],
+) -> list[Obstacle]:
+    """The insides of walls that are drawn by their faces, as obstacles."""
+    known = shapely.union_all([wall.region() for wall in solid_walls])
+    shapely.prepare(known)
+    tree = shapely.STRtree([middle_line(path) for path, _ in lines])
+    found = []
+    for face in faces:
+        is_crumb = face.area < GAP_MM**2
+        if is_crumb or known.contains(face.representative_point()) or not is_thin(face):
+            continue
+        placed = lines[tree.nearest(face)][1].placed
+        found.append(Obstacle(face, Kind.WALL, placed.layer, placed.handle))
+    return found
+
+
+def _is_wall_thick(shape: Shape) -> bool:
+    if isinstance(shape, Circle):
+        return 2 * shape.radius_mm <= WALL_MM
+    return isinstance(shape, LineString) or is_thin(shape)
+
+
+def outlines_of(obstacles: Iterable[Obstacle]) -> list[LineString]:
+    """The outlines of solids as lines that walls may end at."""
+    return [
+        LineString(ring.coords)
+        for obstacle in obstacles
+        if not isinstance(obstacle.shape, LineString)
+        for polygon in polygons_in([obstacle.region()])
+        for ring in (polygon.exterior, *polygon.interiors)
+    ]
+
+
+def _obstacles(shapes: Iterable[Shape], kind: Kind, feature: Feature) -> list[Obstacle]:
+    placed = feature.placed
+    return [Obstacle(shape, kind, placed.layer, placed.handle) for shape in shapes]
+
+
+def _wide_outlines(wide: Counter[str]) -> Iterable[Finding]:
+    for layer, count in wide.items():
+        if count:
+            yield Finding(
+                "wide-outline",
+                f"{count} closed outlines on wall layer '{layer}' are wider than {WALL_MM:g} mm: "
+                "their lines stop the robot, what they enclose counts as floor",
+                "draw solid parts filled (HATCH, SOLID) or on a column layer",
+                layer=layer,
+            )
+
+
+def _filled(inside: Sequence[Obstacle]) -> Iterable[Finding]:
+    if inside:
+        area_m2 = sum(wall.region().area for wall in inside) / 1e6
+        yield Finding(
+            "wall-filled",
+            f"{len(inside)} closed spaces between wall lines, {area_m2:.2f} m² together and "
+            f"nowhere wider than {WALL_MM:g} mm, are taken as the insides of walls",
+            "draw walls filled or as closed outlines if one of them is free floor",
+        )
+
+
+def _gaps(what: str, joined: Network, frame: Frame) -> tuple[Finding, ...]:
+    """What was joined and what was left open, on one layer or for one kind."""
+    findings = []
+    if joined.n_joined:
+        findings.append(
+            Finding(
+                "gap-closed",
+                f"{joined.n_joined} line ends of '{what}' were joined over gaps of up to "
+                f"{GAP_MM:g} mm",
+            )
+        )
+    for gap in joined.gaps:
+        start_mm, end_mm = frame.to_drawing_mm((gap.start, gap.end))
+        findings.append(
+            Finding(
+                "gap-open",
+                f"lines of '{what}' miss each other by {gap.width_mm:.1f} mm, from "
+                f"({start_mm[0]:.1f}, {start_mm[1]:.1f}) to ({end_mm[0]:.1f}, {end_mm[1]:.1f}) mm",
+                "join them in the drawing if they were meant to meet",
+                at_mm=(float(start_mm[0]), float(start_mm[1])),
+            )
+        )
+    return tuple(findings)

@@ -1,0 +1,180 @@
+"""From a drawing to a floor plan: survey, obstacles, floor, frame."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Final, TypeVar
+
+import numpy as np
+import shapely
+from ezdxf.entities import Circle as CircleEntity
+from ezdxf.entities import DXFEntity, Insert
+from ezdxf.entities import Point as PointEntity
+from ezdxf.math import Vec3
+from shapely.geometry import LineString
+
+from satAOI_adapters.dxf_read.curves import Point
+from satAOI_adapters.dxf_read.doors import partition_findings, partitions, spans
+from satAOI_adapters.dxf_read.entities import LOCAL_DIGITS, Feature
+from satAOI_adapters.dxf_read.floor import floor_of
+from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
+from satAOI_adapters.dxf_read.options import ReadOptions
+from satAOI_adapters.dxf_read.shapes import middle_line
+from satAOI_adapters.dxf_read.survey import Survey, features, survey
+from satAOI_adapters.dxf_read.unclassified import unclassified
+from satAOI_adapters.layers import KINDS, Meaning
+from satAOI_geo.plan import (
+    Circle,
+    Finding,
+    FloatArray,
+    FloorPlan,
+    Frame,
+    Kind,
+    Obstacle,
+    Region,
+    Shape,
+    Source,
+)
+
+START_LAYER: Final = "SATAOI-START"
+"""A POINT, CIRCLE or INSERT on this layer marks the disc's centre at the start."""
+
+SOLID_KINDS: Final = (Kind.COLUMN, Kind.HOLE, Kind.EMBEDDED, Kind.EQUIPMENT)
+"""Kinds whose closed outlines are solid however wide they are."""
+
+
+ShapeT = TypeVar("ShapeT", Region, Shape)
+
+
+def read(path: Path, options: ReadOptions) -> FloorPlan:
+    """The floor plan in a DXF file.
+
+    Raises:
+        InputError: If an option or the layer file is wrong.
+        DrawingError: If the drawing cannot be used as it is.
+        LimitError: If it asks for more than `limits` allows.
+    """
+    drawing = survey(path, options)
+    frame = drawing.frame()
+    drawn = features(drawing, frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
+    standing = _standing(drawn, frame)
+    sills = spans(drawn[Meaning.DOOR], [o.region() for o in standing.obstacles])
+    floor = floor_of(drawn[Meaning.FLOOR], standing.obstacles, sills, frame)
+    others = unclassified(drawn[None], floor.region, standing.obstacles)
+    start_mm, start_findings = _start(drawing, frame)
+    plan = FloorPlan(
+        floor=floor.region,
+        obstacles=_on(floor.region, (*standing.obstacles, *others.obstacles)),
+        findings=(
+            *drawing.findings,
+            *standing.findings,
+            *floor.findings,
+            *others.findings,
+            *start_findings,
+        ),
+        floor_source=floor.source,
+        frame=frame,
+        source=Source(str(path), drawing.sha256, "dxf", drawing.unit.name, drawing.unit.source),
+        start_mm=start_mm,
+    )
+    return _from_corner(plan)
+
+
+def _standing(drawn: dict[Meaning | None, list[Feature]], frame: Frame) -> Standing:
+    """The obstacles of all kinds that layers name."""
+    by_kind: dict[Kind, list[Feature]] = {kind: [] for kind in Kind}
+    for meaning, kind in KINDS.items():
+        by_kind[kind].extend(drawn[meaning])
+    parts = [solids(by_kind[kind], kind, frame) for kind in SOLID_KINDS]
+    columns = parts[SOLID_KINDS.index(Kind.COLUMN)].obstacles
+    drawn_as_walls = by_kind[Kind.WALL]
+    on_door_layers = partitions(drawn[Meaning.DOOR], _lines(drawn_as_walls))
+    edges = _lines(drawn[Meaning.FLOOR], only_closed=True)
+    parts.append(walls([*drawn_as_walls, *on_door_layers], columns, edges, frame))
+    return Standing(
+        tuple(obstacle for part in parts for obstacle in part.obstacles),
+        (
+            *(finding for part in parts for finding in part.findings),
+            *partition_findings(on_door_layers),
+        ),
+    )
+
+
+def _lines(drawn: Sequence[Feature], *, only_closed: bool = False) -> list[LineString]:
+    return [
+        middle_line(path)
+        for feature in drawn
+        for path in feature.paths
+        if path.closed or not only_closed
+    ]
+
+
+def _on(floor: Region, obstacles: Sequence[Obstacle]) -> tuple[Obstacle, ...]:
+    """The obstacles that reach the floor; beyond it everything is closed to the robot anyway."""
+    shapely.prepare(floor)
+    return tuple(obstacle for obstacle in obstacles if floor.intersects(obstacle.region()))
+
+
+def _start(drawing: Survey, frame: Frame) -> tuple[Point | None, tuple[Finding, ...]]:
+    """The place that the drawing marks as the start, and what is to be said about it."""
+    marks = [
+        place
+        for entity in drawing.document.modelspace()
+        if entity.dxf.get("layer", "").upper() == START_LAYER
+        for place in _places(entity)
+    ]
+    if not marks:
+        return None, ()
+    x_mm, y_mm = frame.to_local_mm(marks[0])
+    start_mm = (round(float(x_mm), LOCAL_DIGITS), round(float(y_mm), LOCAL_DIGITS))
+    if len(marks) == 1:
+        return start_mm, ()
+    return start_mm, (
+        Finding(
+            "start-ambiguous",
+            f"{len(marks)} marks on layer {START_LAYER}: the first one is used",
+            "leave one, or give --start",
+            layer=START_LAYER,
+        ),
+    )
+
+
+def _places(entity: DXFEntity) -> list[Point]:
+    """Where a mark is, in drawing units."""
+    if isinstance(entity, PointEntity):
+        place = entity.dxf.location
+    elif isinstance(entity, CircleEntity):
+        place = entity.ocs().to_wcs(entity.dxf.center)
+    elif isinstance(entity, Insert):
+        place = entity.ocs().to_wcs(entity.dxf.insert)
+    else:
+        return []
+    return [(Vec3(place).x, Vec3(place).y)]
+
+
+def _from_corner(plan: FloorPlan) -> FloorPlan:
+    """The plan in a frame whose origin is the floor's lower left corner, in whole millimetres."""
+    left_mm, bottom_mm, _, _ = plan.floor.bounds
+    shift_mm = np.floor(np.round((left_mm, bottom_mm), LOCAL_DIGITS))
+    x_mm, y_mm = plan.frame.origin_mm
+    origin_mm = (x_mm + float(shift_mm[0]), y_mm + float(shift_mm[1]))
+    return replace(
+        plan,
+        floor=_moved(plan.floor, shift_mm),
+        obstacles=tuple(replace(o, shape=_moved(o.shape, shift_mm)) for o in plan.obstacles),
+        frame=replace(plan.frame, origin_mm=origin_mm),
+        start_mm=None if plan.start_mm is None else _spot(np.subtract(plan.start_mm, shift_mm)),
+    )
+
+
+def _moved(shape: ShapeT, shift_mm: FloatArray) -> ShapeT:
+    """A shape with its coordinates taken from another origin, and still to `LOCAL_DIGITS`."""
+    if isinstance(shape, Circle):
+        x_mm, y_mm = _spot(np.subtract((shape.x_mm, shape.y_mm), shift_mm))
+        return replace(shape, x_mm=x_mm, y_mm=y_mm)
+    return shapely.transform(shape, lambda points: np.round(points - shift_mm, LOCAL_DIGITS) + 0.0)
+
+
+def _spot(point_mm: FloatArray) -> Point:
+    x_mm, y_mm = np.round(point_mm, LOCAL_DIGITS) + 0.0
+    return float(x_mm), float(y_mm)

@@ -1,0 +1,232 @@
+"""What a layer is, by its name: a table of patterns, kept as data in `layers.toml`.
+
+The built-in table knows the names of several offices and languages; a user's own TOML file of
+the same form goes before it, or takes its place with `replace = true`.
+"""
+
+import re
+import tomllib
+import unicodedata
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from fnmatch import fnmatchcase
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from satAOI_geo.errors import InputError
+from satAOI_geo.plan import Kind
+
+BUILT_IN: Final = Path(__file__).with_name("layers.toml")
+"""The table that comes with the program."""
+
+XREF_PREFIX: Final = re.compile(r"^.*(\$\d+\$|\|)")
+"""`plan$0$` of a bound external reference, `plan|` of an attached one."""
+
+WORD: Final = re.compile(r"[^\W\d_]+")
+"""A run of letters: digits, signs and blanks part the words of a name."""
+
+HUMP: Final = re.compile(r"(?<=[a-z])(?=[A-Z])")
+"""Where `OuterWall` parts into two words."""
+
+
+class Meaning(StrEnum):
+    """What a layer or a block stands for; the first five are kinds of obstacle."""
+
+    WALL = "wall"
+    COLUMN = "column"
+    HOLE = "hole"
+    EMBEDDED = "embedded"
+    EQUIPMENT = "equipment"
+    WINDOW = "window"
+    DOOR = "door"
+    FLOOR = "floor"
+    IGNORE = "ignore"
+
+
+KINDS: Final = {
+    Meaning.WALL: Kind.WALL,
+    Meaning.WINDOW: Kind.WALL,
+    Meaning.COLUMN: Kind.COLUMN,
+    Meaning.HOLE: Kind.HOLE,
+    Meaning.EMBEDDED: Kind.EMBEDDED,
+    Meaning.EQUIPMENT: Kind.EQUIPMENT,
+}
+"""The kind of obstacle that a meaning makes; the others make none."""
+
+
+class Certainty(StrEnum):
+    """How sure a layer's meaning is."""
+
+    GIVEN = "given"
+    """The user's file says so."""
+    CERTAIN = "certain"
+    """The name is the pattern, nothing else."""
+    LIKELY = "likely"
+    """The pattern is a part of the name."""
+    UNKNOWN = "unknown"
+    """No pattern matches."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What a name means and by which pattern.
+
+    Attributes:
+        meaning: None where no pattern matches.
+        pattern: As written in the table.
+        certainty: How sure it is.
+    """
+
+    meaning: Meaning | None = None
+    pattern: str = ""
+    certainty: Certainty = Certainty.UNKNOWN
+
+
+class LayersFile(BaseModel):
+    """A TOML file of layer patterns: kinds in order of precedence, each with its patterns."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=False)
+
+    replace: bool = False
+    layers: dict[Meaning, list[str]] = {}
+    blocks: dict[Meaning, list[str]] = {}
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """Patterns of one meaning; a name must match one of `patterns` and none of `exceptions`."""
+
+    meaning: Meaning
+    patterns: tuple[str, ...]
+    exceptions: tuple[str, ...]
+    given: bool
+
+    def verdict(self, name: str) -> Verdict | None:
+        """The first pattern that matches the name, or None."""
+        if any(_matches(exception, name) for exception in self.exceptions):
+            return None
+        for pattern in self.patterns:
+            if _matches(pattern, name):
+                return Verdict(self.meaning, pattern, self._certainty(pattern, name))
+        return None
+
+    def _certainty(self, pattern: str, name: str) -> Certainty:
+        if self.given:
+            return Certainty.GIVEN
+        whole = _folded(pattern) == _folded(name)
+        return Certainty.CERTAIN if whole else Certainty.LIKELY
+
+
+@dataclass(frozen=True, slots=True)
+class LayerTable:
+    """Which layer and which block means what: the first rule that matches decides."""
+
+    layers: tuple[Rule, ...]
+    blocks: tuple[Rule, ...]
+
+    def of_layer(self, name: str) -> Verdict:
+        """What a layer of this name means; prefixes of external references are dropped."""
+        return _first(self.layers, without_xref_prefix(name))
+
+    def of_block(self, name: str) -> Verdict:
+        """What a block of this name means."""
+        return _first(self.blocks, without_xref_prefix(name))
+
+
+def layer_table(own: Path | None = None) -> LayerTable:
+    """The built-in table, with the user's file before it or in its place.
+
+    Raises:
+        InputError: If the user's file is missing, not TOML, or names an unknown kind.
+    """
+    built_in = _built_in()
+    if own is None:
+        return built_in
+    file = _read(own)
+    layers, blocks = _rules(file.layers, given=True), _rules(file.blocks, given=True)
+    if file.replace:
+        return LayerTable(layers, blocks)
+    return LayerTable(layers + built_in.layers, blocks + built_in.blocks)
+
+
+def without_xref_prefix(name: str) -> str:
+    """The layer's own name: `plan$0$A-WALL` and `plan|A-WALL` are A-WALL."""
+    return XREF_PREFIX.sub("", name) or name
+
+
+@cache
+def _built_in() -> LayerTable:
+    file = _read(BUILT_IN)
+    return LayerTable(_rules(file.layers, given=False), _rules(file.blocks, given=False))
+
+
+def _read(path: Path) -> LayersFile:
+    try:
+        with path.open("rb") as stream:
+            keys = tomllib.load(stream)
+    except OSError as error:
+        raise InputError(f"layer file '{path}': {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"layer file '{path}' is not TOML: {error}") from error
+    try:
+        return LayersFile.model_validate(keys)
+    except ValidationError as error:
+        raise InputError(f"layer file '{path}': {_first_fault(error)}") from error
+
+
+def _first_fault(error: ValidationError) -> str:
+    """One key at fault and what is wrong with it, in one line."""
+    fault = error.errors(include_url=False)[0]
+    # pydantic marks a faulty key of a table with a last step '[key]'
+    steps = [str(step) for step in fault["loc"] if step != "[key]"]
+    key = ".".join(steps)
+    if fault["loc"][-1] == "[key]":
+        return f"unknown kind '{key}'; known are {', '.join(Meaning)}"
+    if fault["type"] == "extra_forbidden":
+        return f"unknown key '{key}'; known are {', '.join(LayersFile.model_fields)}"
+    if steps[0] in {"layers", "blocks"}:
+        return f"'{key}' is {fault['input']!r}; give a list of patterns, like [\"A-WALL*\"]"
+    return f"'{key}' is {fault['input']!r}; give true or false"
+
+
+def _rules(table: Mapping[Meaning, list[str]], *, given: bool) -> tuple[Rule, ...]:
+    return tuple(
+        Rule(
+            meaning,
+            tuple(pattern for pattern in patterns if not pattern.startswith("!")),
+            tuple(pattern[1:] for pattern in patterns if pattern.startswith("!")),
+            given,
+        )
+        for meaning, patterns in table.items()
+    )
+
+
+def _first(rules: tuple[Rule, ...], name: str) -> Verdict:
+    verdicts = (rule.verdict(name) for rule in rules)
+    return next((verdict for verdict in verdicts if verdict is not None), Verdict())
+
+
+@cache
+def _matches(pattern: str, name: str) -> bool:
+    """Whether a pattern fits: a glob the whole name, a plain word any word, a name itself."""
+    folded_pattern, folded_name = _folded(pattern), _folded(name)
+    if "*" in pattern or "?" in pattern:
+        return fnmatchcase(folded_name, folded_pattern)
+    return folded_pattern == folded_name or folded_pattern in _words(name)
+
+
+@cache
+def _words(name: str) -> frozenset[str]:
+    parted = HUMP.sub(" ", name)
+    return frozenset(_folded(word) for text in (name, parted) for word in WORD.findall(text))
+
+
+@cache
+def _folded(text: str) -> str:
+    """The text without case and accents; letters such as ł or ø, which are no accents, stay."""
+    decomposed = unicodedata.normalize("NFKD", text.casefold())
+    return "".join(c for c in decomposed if not unicodedata.combining(c))

@@ -1,0 +1,104 @@
+"""What layer names mean, and what a user's own file changes about it."""
+
+from pathlib import Path
+
+import pytest
+
+from satAOI_adapters.layers import Certainty, Meaning, layer_table
+from satAOI_geo.errors import InputError
+
+
+@pytest.mark.parametrize(
+    ("name", "meaning"),
+    [
+        ("FLOOR", Meaning.FLOOR),
+        ("Slab", Meaning.FLOOR),
+        ("WALL", Meaning.WALL),
+        ("Walls", Meaning.WALL),
+        ("COLUMNS", Meaning.COLUMN),
+        ("column", Meaning.COLUMN),
+        ("HOLES", Meaning.HOLE),
+        ("EMBEDDED", Meaning.EMBEDDED),
+        ("EQUIPMENT", Meaning.EQUIPMENT),
+        ("A-WALL-FULL", Meaning.WALL),
+        ("S-COLS", Meaning.COLUMN),
+        ("A-FLOR-OPNG", Meaning.HOLE),
+        ("A-GLAZ", Meaning.WINDOW),
+        ("A-DOOR", Meaning.DOOR),
+        ("A-WALL-PATT", Meaning.IGNORE),
+        ("A-FURN", Meaning.IGNORE),
+        ("OuterWall_2", Meaning.WALL),
+        ("墙体", Meaning.WALL),
+        ("柱", Meaning.COLUMN),
+        ("楼板洞口", Meaning.HOLE),
+        ("预埋件", Meaning.EMBEDDED),
+        ("门窗", Meaning.WINDOW),
+        ("Außenwand EG neu", Meaning.WALL),
+        ("Wände", Meaning.WALL),
+        ("Trémie", Meaning.HOLE),
+        ("ARQ_MUROS", Meaning.WALL),
+        ("Стены", Meaning.WALL),
+        ("plan$0$A-WALL", Meaning.WALL),
+        ("plan|S-COLS", Meaning.COLUMN),
+        ("DWELLING", None),
+        ("0", None),
+    ],
+)
+def test_office_names_are_understood(name: str, meaning: Meaning | None) -> None:
+    assert layer_table().of_layer(name).meaning is meaning
+
+
+def test_whole_name_is_surer_than_a_part_of_it() -> None:
+    table = layer_table()
+    assert table.of_layer("WALL").certainty is Certainty.CERTAIN
+    assert table.of_layer("A-WALL-FULL").certainty is Certainty.LIKELY
+    assert table.of_layer("XYZ").certainty is Certainty.UNKNOWN
+
+
+def own(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "office.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_own_patterns_go_before_the_built_in_ones(tmp_path: Path) -> None:
+    table = layer_table(own(tmp_path, '[layers]\nignore = ["A-WALL-DEMO"]\n'))
+    assert table.of_layer("A-WALL-DEMO").meaning is Meaning.IGNORE
+    assert table.of_layer("A-WALL-DEMO").certainty is Certainty.GIVEN
+    assert table.of_layer("A-WALL").meaning is Meaning.WALL
+
+
+def test_own_file_can_take_the_place_of_the_table(tmp_path: Path) -> None:
+    table = layer_table(own(tmp_path, 'replace = true\n[layers]\nwall = ["L1"]\n'))
+    assert table.of_layer("L1").meaning is Meaning.WALL
+    assert table.of_layer("A-WALL").meaning is None
+
+
+def test_exception_keeps_a_name_out_of_a_kind(tmp_path: Path) -> None:
+    table = layer_table(own(tmp_path, '[layers]\ncolumn = ["K*", "!K9"]\n'))
+    assert table.of_layer("K1").meaning is Meaning.COLUMN
+    assert table.of_layer("K9").meaning is None
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('[layers]\nwals = ["A"]\n', "unknown kind 'layers.wals'"),
+        ('[layers]\nwall = "A"\n', "'layers.wall' is 'A'; give a list"),
+        ("colour = 3\n", "unknown key 'colour'"),
+        ("replace = 'perhaps'\n", "'replace' is 'perhaps'; give true or false"),
+        ("[layers\n", "is not TOML"),
+    ],
+)
+def test_faulty_file_is_refused_with_the_key_at_fault(
+    text: str, message: str, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=r"office\.toml") as caught:
+        layer_table(own(tmp_path, text))
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_file_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"nowhere\.toml"):
+        layer_table(tmp_path / "nowhere.toml")

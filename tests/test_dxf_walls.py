@@ -1,0 +1,283 @@
+"""Walls, floors and things on unnamed layers: what a person sees is what the plan holds."""
+
+import math
+from pathlib import Path
+
+import ezdxf
+import pytest
+import shapely
+from ezdxf.document import Drawing
+from ezdxf.layouts import Modelspace
+from shapely.geometry import LineString, Polygon, box
+
+from satAOI_geo.errors import EmptyPlanError
+from satAOI_geo.plan import Kind
+from tests.drawings import MM, codes, drawing, plan_of, rectangle, standing
+
+
+def lines(space: Modelspace, corners: list[tuple[float, float]], *, layer: str) -> None:
+    """Single LINEs from corner to corner, and back to the first."""
+    for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
+        space.add_line(start, end, dxfattribs={"layer": layer})
+
+
+def house(*, opening_mm: float, at: float = 2000.0, layer: str = "WALL") -> Drawing:
+    """A room of 6 × 4 m inside walls 200 mm thick, drawn as lines, open at the bottom."""
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = MM
+    corners = [
+        (at, 0),
+        (-200, 0),
+        (-200, 4400),
+        (6200, 4400),
+        (6200, 0),
+        (at + opening_mm, 0),
+        (at + opening_mm, 200),
+        (6000, 200),
+        (6000, 4200),
+        (0, 4200),
+        (0, 200),
+        (at, 200),
+    ]
+    lines(document.modelspace(), [(float(x), float(y)) for x, y in corners], layer=layer)
+    return document
+
+
+OUTSIDE = box(-200, 0, 6200, 4400)
+INSIDE = box(0, 200, 6000, 4200)
+
+
+@pytest.mark.parametrize("opening_mm", [760.0, 1200.0, 2500.0])
+def test_inferred_floor_runs_along_the_outer_faces_and_across_the_opening(
+    opening_mm: float, tmp_path: Path
+) -> None:
+    plan = plan_of(house(opening_mm=opening_mm), tmp_path)
+    in_drawing = shapely.affinity.translate(plan.floor, *plan.frame.origin_mm)
+    assert in_drawing.equals(OUTSIDE)
+    assert plan.floor_source == "inferred"
+    assert "floor-inferred" in codes(plan)
+
+
+def test_opening_wider_than_the_widest_door_lets_the_floor_leak(tmp_path: Path) -> None:
+    with pytest.raises(EmptyPlanError, match="layer FLOOR"):
+        plan_of(house(opening_mm=2600.0), tmp_path)
+
+
+def test_space_between_wall_faces_is_wall_and_the_room_is_not(tmp_path: Path) -> None:
+    plan = plan_of(house(opening_mm=900.0), tmp_path)
+    walls_mm2 = OUTSIDE.area - INSIDE.area - 900 * 200
+    assert plan.obstacle_region().area == walls_mm2
+    assert "wall-filled" in codes(plan)
+
+
+def test_wall_ends_left_open_at_a_door_are_closed(tmp_path: Path) -> None:
+    document = house(opening_mm=900.0)
+    for line in document.modelspace().query("LINE"):
+        if line.dxf.start.x == line.dxf.end.x and line.dxf.start.x in {2000.0, 2900.0}:
+            document.modelspace().delete_entity(line)
+    plan = plan_of(document, tmp_path)
+    assert plan.obstacle_region().area == OUTSIDE.area - INSIDE.area - 900 * 200
+
+
+def test_niche_in_the_outer_wall_is_not_floor(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    # the wall's outer face steps back by 500 mm over 2 m
+    outer = [(0, 0), (8000, 0), (8000, 6000), (5000, 6000), (5000, 5500), (3000, 5500)]
+    outer += [(3000, 6000), (0, 6000)]
+    document.modelspace().add_lwpolyline(outer, close=True, dxfattribs={"layer": "WALL"})
+    rectangle(document.modelspace(), 200, 200, 7800, 5300, layer="WALL")
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.equals(Polygon(outer))
+
+
+def test_notch_outside_a_door_in_a_corner_is_not_floor(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    space = document.modelspace()
+    # an L-shaped house whose door opens beside the inner corner of the L
+    outer = [(0, 0), (8000, 0), (8000, 4000), (4000, 4000), (4000, 8000), (0, 8000)]
+    layer = {"layer": "WALL"}
+    space.add_lwpolyline(
+        [
+            (5100, 4000),
+            *[(4000, 4000), (4000, 8000), (0, 8000), (0, 0)],
+            (8000, 0),
+            (8000, 4000),
+            (6000, 4000),
+        ],
+        dxfattribs=layer,
+    )
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.equals(Polygon(outer))
+
+
+def test_room_drawn_as_a_closed_outline_on_a_wall_layer_is_not_filled(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    rectangle(document.modelspace(), 0, 0, 6400, 4400, layer="WALL")
+    rectangle(document.modelspace(), 200, 200, 6200, 4200, layer="WALL")
+    plan = plan_of(document, tmp_path)
+    assert plan.free_region().area == 6000 * 4000
+    assert "wide-outline" in codes(plan)
+
+
+def test_thin_closed_outline_on_a_wall_layer_is_solid(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 1000, 1000, 5000, 1240, layer="A-WALL")
+    plan = plan_of(document, tmp_path)
+    assert plan.obstacle_region().area == 4000 * 240
+
+
+def test_wall_filled_twice_counts_once(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 1000, 1000, 5000, 1240, layer="WALL")
+    hatch = document.modelspace().add_hatch(dxfattribs={"layer": "WALL"})
+    hatch.paths.add_polyline_path([(1000, 1000), (5000, 1000), (5000, 1240), (1000, 1240)])
+    assert plan_of(document, tmp_path).obstacle_region().area == 4000 * 240
+
+
+@pytest.mark.parametrize("layer", ["COLUMN", "HOLE", "EMBEDDED", "EQUIPMENT"])
+def test_loop_of_lines_is_solid(layer: str, tmp_path: Path) -> None:
+    document = drawing()
+    lines(document.modelspace(), [(0, 0), (300, 0), (300, 400), (0, 400)], layer=layer)
+    (obstacle,) = standing(plan_of(document, tmp_path), layer)
+    assert obstacle.shape.equals(box(0, 0, 300, 400))
+    assert obstacle.kind is Kind(layer.lower())
+
+
+def test_two_squares_and_a_stray_line_are_two_solids_and_a_line(tmp_path: Path) -> None:
+    document = drawing()
+    space = document.modelspace()
+    lines(space, [(0, 0), (300, 0), (300, 300), (0, 300)], layer="COLUMN")
+    lines(space, [(1000, 0), (1300, 0), (1300, 300), (1000, 300)], layer="COLUMN")
+    space.add_line((5000, 5000), (6000, 5000), dxfattribs={"layer": "COLUMN"})
+    shapes = [obstacle.shape for obstacle in standing(plan_of(document, tmp_path), "COLUMN")]
+    assert sorted(type(shape).__name__ for shape in shapes) == ["LineString", "Polygon", "Polygon"]
+
+
+def test_corner_open_by_less_than_a_millimetre_is_closed_and_counted(tmp_path: Path) -> None:
+    document = drawing()
+    space = document.modelspace()
+    corners = [(0.0, 0.0), (300.0, 0.0), (300.0, 300.0), (0.0, 300.0)]
+    for (x0, y0), (x1, y1) in zip(corners, [*corners[1:], corners[0]], strict=True):
+        space.add_line((x0, y0), (x1 + 0.4, y1 - 0.3), dxfattribs={"layer": "COLUMN"})
+    plan = plan_of(document, tmp_path)
+    assert plan.obstacle_region().area == pytest.approx(300 * 300, rel=0.01)
+    assert "gap-closed" in codes(plan)
+
+
+def test_wider_gap_is_left_open_and_reported_with_both_ends(tmp_path: Path) -> None:
+    document = drawing()
+    document.modelspace().add_lwpolyline(
+        [(0, 12), (0, 300), (300, 300), (300, 0), (0, 0)], dxfattribs={"layer": "COLUMN"}
+    )
+    plan = plan_of(document, tmp_path)
+    assert plan.obstacle_region().area == 0
+    (gap,) = [finding for finding in plan.findings if finding.code == "gap-open"]
+    assert "12.0 mm" in gap.message
+    assert gap.at_mm is not None
+
+
+def test_door_leaves_and_swings_never_stop_the_robot(tmp_path: Path) -> None:
+    document = drawing()
+    space = document.modelspace()
+    space.add_arc((5000, 5000), 900, 0, 90, dxfattribs={"layer": "A-DOOR"})
+    space.add_line((5000, 5000), (5000, 5900), dxfattribs={"layer": "A-DOOR"})
+    leaf = document.blocks.new("Door_90")
+    leaf.add_line((0, 0), (0, 900))
+    space.add_blockref("Door_90", (2000, 2000), {"layer": "WALL"})
+    rectangle(space, 7000, 7000, 7300, 7300, layer="COLUMN")
+    assert {obstacle.layer for obstacle in plan_of(document, tmp_path).obstacles} == {"COLUMN"}
+
+
+def test_window_stops_the_robot(tmp_path: Path) -> None:
+    document = drawing()
+    document.modelspace().add_line((1000, 0), (3000, 0), dxfattribs={"layer": "A-GLAZ"})
+    (window,) = standing(plan_of(document, tmp_path), "A-GLAZ")
+    assert window.kind is Kind.WALL
+
+
+def test_partition_drawn_on_the_door_layer_is_a_wall(tmp_path: Path) -> None:
+    document = drawing()
+    space = document.modelspace()
+    on = {"layer": "A-DOOR"}
+    space.add_lwpolyline([(1000, 1000), (1000, 5000), (4000, 5000)], dxfattribs=on)
+    space.add_line((6000, 1000), (6900, 1000), dxfattribs=on)
+    plan = plan_of(document, tmp_path)
+    assert [o.shape for o in standing(plan, "A-DOOR")] == [
+        LineString([(1000, 1000), (1000, 5000), (4000, 5000)])
+    ]
+    assert "wall-on-door-layer" in codes(plan)
+
+
+def test_drawing_without_a_known_layer_is_all_walls(tmp_path: Path) -> None:
+    plan = plan_of(house(opening_mm=900.0, layer="0"), tmp_path)
+    assert {obstacle.kind for obstacle in plan.obstacles} == {Kind.WALL}
+    assert "all-walls" in codes(plan)
+
+
+def test_closed_shape_on_an_unknown_layer_is_an_obstacle_and_said(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 100, 100, 200, 200, layer="COLUMN")
+    rectangle(document.modelspace(), 4000, 4000, 5000, 4500, layer="XYZ")
+    document.modelspace().add_line((0, 8000), (9000, 8000), dxfattribs={"layer": "XYZ"})
+    plan = plan_of(document, tmp_path)
+    (thing,) = standing(plan, "XYZ")
+    assert thing.kind is Kind.UNCLASSIFIED
+    assert thing.shape.equals(box(4000, 4000, 5000, 4500))
+    assert "unclassified" in codes(plan)
+
+
+def test_pattern_hatch_on_an_unknown_layer_is_no_obstacle(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 100, 100, 200, 200, layer="COLUMN")
+    hatch = document.modelspace().add_hatch(dxfattribs={"layer": "XYZ"})
+    hatch.set_pattern_fill("ANSI31")
+    hatch.paths.add_polyline_path([(1000, 1000), (5000, 1000), (5000, 3000), (1000, 3000)])
+    assert standing(plan_of(document, tmp_path), "XYZ") == []
+
+
+def test_sheet_frame_around_the_floor_is_no_obstacle(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 100, 100, 200, 200, layer="COLUMN")
+    rectangle(document.modelspace(), -3000, -3000, 15_000, 12_000, layer="XYZ")
+    assert standing(plan_of(document, tmp_path), "XYZ") == []
+
+
+def test_outline_of_a_room_on_an_unknown_layer_is_no_obstacle(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    rectangle(document.modelspace(), 0, 0, 6400, 4400, layer="WALL")
+    rectangle(document.modelspace(), 200, 200, 6200, 4200, layer="WALL")
+    rectangle(document.modelspace(), 200, 200, 6200, 4200, layer="XYZ")
+    plan = plan_of(document, tmp_path)
+    assert standing(plan, "XYZ") == []
+    assert "room-outline" in codes(plan)
+
+
+def test_floor_of_tiles_leaves_out_the_pool(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    space = document.modelspace()
+    on = {"layer": "FLOORING"}
+    pool = box(3000, 3000, 7000, 7000)
+    for k in range(11):
+        for line in (
+            LineString([(1000 * k, 0), (1000 * k, 10_000)]),
+            LineString([(0, 1000 * k), (10_000, 1000 * k)]),
+        ):
+            dry = line.difference(pool) if not pool.touches(line) else line
+            for part in getattr(dry, "geoms", [dry]):
+                space.add_line(part.coords[0], part.coords[-1], dxfattribs=on)
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == 10_000**2 - 4000**2
+    assert "floor-without-tiles" in codes(plan)
+
+
+def test_courtyard_arc_wall_is_filled_between_its_faces(tmp_path: Path) -> None:
+    document = drawing()
+    space = document.modelspace()
+    on = {"layer": "WALL"}
+    for radius in (3000, 3200):
+        space.add_arc((0, 0), radius, 0, 90, dxfattribs=on)
+    space.add_line((3000, 0), (3200, 0), dxfattribs=on)
+    space.add_line((0, 3000), (0, 3200), dxfattribs=on)
+    ring_mm2 = math.pi * (3200**2 - 3000**2) / 4
+    wall_mm2 = plan_of(document, tmp_path).obstacle_region().area
+    assert 0 <= wall_mm2 - ring_mm2 < 0.02 * math.pi * 3200
