@@ -1,11 +1,13 @@
 """The area of interest of the named plans against what a person can compute."""
 
+from dataclasses import replace
 from functools import cache
 
 import pytest
 import shapely
 
 from satAOI_geo.pipeline import Result, area_of_interest
+from satAOI_geo.search import Settings
 from satAOI_geo.units import MM2_PER_M2
 from tests import plans
 
@@ -15,9 +17,8 @@ STEP_MM = 10.0
 @cache
 def result(name: str) -> Result:
     case = plans.CASES[name]()
-    return area_of_interest(
-        case.plan, start_mm=case.start_mm, connectivity="pose", step_mm=STEP_MM, exact_outline=True
-    )
+    marked = replace(case.plan, start_mm=case.start_mm)
+    return area_of_interest(marked, settings=Settings(step_mm=STEP_MM, exact_outline=True))
 
 
 def closed(measure: str) -> list[str]:
