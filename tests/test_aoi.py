@@ -211,6 +211,22 @@ def test_touching_discs_are_two_parts_that_share_a_point() -> None:
     assert apart.area_mm2 == pytest.approx(2 * math.pi * DISC_MM**2, rel=1e-14)
 
 
+@pytest.mark.parametrize(("square", "node"), [(5, (1, 2)), (2, (1, 1)), (13, (2, 3)), (1, (0, 1))])
+def test_discs_touch_although_their_radius_is_rounded(square: int, node: tuple[int, int]) -> None:
+    aoi = at((0, 0), node, shape=(4, 4), radius=math.sqrt(square / 4)).aoi()
+    assert len(aoi.outlines) == 2
+    assert aoi.area_mm2 == pytest.approx(math.pi / 2 * square * STEP_MM**2, rel=1e-14)
+
+
+def test_island_in_a_hole_is_a_part_and_the_hole_belongs_to_what_surrounds_it() -> None:
+    reached = np.zeros((41, 41), dtype=np.bool_)
+    reached[5:36, 5:36] = True
+    reached[6:35, 6:35] = False
+    reached[20, 20] = True
+    ring, island = Discs(reached, 3.5).aoi().outlines
+    assert [len(ring.holes), len(island.holes)] == [1, 0]
+
+
 def test_part_that_touches_itself_closes_around_a_hole() -> None:
     reached = np.zeros((41, 41), dtype=np.bool_)
     reached[5:36, 5:36] = True
