@@ -18,7 +18,8 @@ from typing import NamedTuple, TypeAlias
 import numba
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from satAOI_geo.plan import BoolArray, FloatArray
@@ -26,12 +27,12 @@ from satAOI_geo.plan import BoolArray, FloatArray
 IntArray: TypeAlias = npt.NDArray[np.int64]
 
 TIE = 1e-12
-"""Share of ρ² within which a squared distance counts as equal to it. R and the step carry errors
-of 1e-16 each; integers apart by less than 1e-12 of their size are equal up to ρ = 10⁶."""
+"""Share of a squared radius within which a squared distance counts as equal to it: far more than
+the rounding of R and the step, and less than sets two whole numbers apart up to ρ = 500 000."""
 
 WELD = 1e-7
 """Ends of arcs this close, in steps, are one point: a nanometre at a step of 10 mm. Rounding moves
-an end by 1e-13, and by 2e-9 where two discs all but touch."""
+an end by 1e-13, and by 4e-9 where two discs all but touch."""
 
 TURN = 2 * math.pi
 
@@ -169,13 +170,13 @@ def _linked(nodes: IntArray, begins: FloatArray, ends: FloatArray, spans_rad: Fl
 def _welded(ends: FloatArray) -> tuple[FloatArray, IntArray]:
     """The distinct points among the ends of arcs, and the number of each end's point."""
     pairs = cKDTree(ends, balanced_tree=False).query_pairs(WELD, output_type="ndarray")
-    graph = scipy.sparse.coo_array(
+    graph = coo_array(
         (np.ones(len(pairs), dtype=np.bool_), (pairs[:, 0], pairs[:, 1])),
         shape=(len(ends), len(ends)),
     )
-    _, labels = scipy.sparse.csgraph.connected_components(graph, directed=False)
+    _, labels = connected_components(graph, directed=False)
     _, representatives = np.unique(labels, return_index=True)
-    return ends[representatives], labels
+    return ends[representatives], labels.astype(np.int64)
 
 
 @numba.njit(nogil=True, cache=True)
