@@ -22,12 +22,14 @@ from PIL import Image
 from shapely.geometry import Polygon, box
 
 from satAOI_adapters import write_aoi
-from satAOI_adapters.dxf_write.note import note_rows
+from satAOI_adapters.dxf_write.legend import note_rows
 from satAOI_adapters.dxf_write.place import entity_bounds, free_place
 from satAOI_geo.errors import InputError, UnreadableError
-from satAOI_geo.pipeline import Result
+from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import Circle, FloorPlan, Frame, Kind, Obstacle
-from tests import results
+from satAOI_geo.reasons import Patch
+from satAOI_geo.search import Settings
+from tests import plans, results
 
 ROOT = Path(__file__).parents[1]
 CORPUS = ROOT.parent / "shared" / "corpus" / "dxf"
@@ -137,6 +139,77 @@ def test_coordinates_go_through_the_frame_and_bulges_stay(tmp_path: Path) -> Non
     assert x == pytest.approx(568_053.449 + 1.65 * math.cos(math.pi / 6), abs=1e-9)
     assert y == pytest.approx(5_774_347.227 + 1.65 * math.sin(math.pi / 6), abs=1e-9)
     assert bulge == pytest.approx(math.tan(math.pi / 8), rel=1e-15)
+
+
+# --- what the area leaves over ---------------------------------------------------------------
+
+
+def drawn_patches(result: Result) -> list[Patch]:
+    cell_mm2 = result.lattice.step_mm**2
+    return [p for p in result.patches if not p.narrow and p.area_mm2 >= cell_mm2]
+
+
+def test_fills_and_what_is_too_small_to_draw_add_up_to_the_free_floor(tmp_path: Path) -> None:
+    result = results.furnished_result()
+    document = written(result, tmp_path / "a.dxf")
+    filled_m2 = sum(
+        facts_of(entity)["area_m2"]
+        for layer in ("SATAOI-AOI", "SATAOI-UNREACHED", "SATAOI-UPPER")
+        for entity in on_layer(document, layer)
+        if entity.dxftype() == "HATCH"
+    )
+    drawn = drawn_patches(result)
+    small_m2 = sum(p.area_mm2 for p in result.patches if p not in drawn) / 1e6
+    # the patches' edges are flattened arcs, at most 0.01 mm off
+    assert filled_m2 + small_m2 == pytest.approx(result.report.floor.free_area_m2, abs=1e-6)
+
+
+def test_a_patch_says_why_it_is_left_and_what_is_in_the_way(tmp_path: Path) -> None:
+    result = results.furnished_result()
+    document = written(result, tmp_path / "a.dxf")
+    expected = Counter(
+        (patch.reason.value, patch.blocker.handle if patch.blocker else "")
+        for patch in drawn_patches(result)
+    )
+    drawn = [
+        facts_of(entity)
+        for layer in ("SATAOI-UNREACHED", "SATAOI-UPPER")
+        for entity in on_layer(document, layer)
+        if entity.dxftype() == "HATCH"
+    ]
+    assert Counter((facts["reason"], facts["blocker"]) for facts in drawn) == expected
+
+
+def test_labels_of_patches_give_area_and_reason(tmp_path: Path) -> None:
+    result = results.furnished_result()
+    largest = drawn_patches(result)[0]
+    entities = on_layer(written(result, tmp_path / "a.dxf"), "SATAOI-UNREACHED")
+    labels = [entity.plain_text() for entity in entities if entity.dxftype() == "MTEXT"]
+    assert labels[0] == f"{largest.area_mm2 / 1e6:.2f} m²\n{largest.reason}"
+    assert not any(label.startswith("0.00") for label in labels)
+
+
+def test_floor_that_only_the_paper_s_rule_claims_has_a_layer_of_its_own(tmp_path: Path) -> None:
+    result = area_of_interest(plans.two_rooms(760.0).plan, settings=Settings(step_mm=20.0))
+    document = written(result, tmp_path / "a.dxf")
+    (upper,) = on_layer(document, "SATAOI-UPPER")
+    claimed_m2 = result.report.disc_connected.area_m2 - result.report.pose_connected.area_m2
+    # less what is narrower than a cell
+    assert facts_of(upper)["area_m2"] == pytest.approx(claimed_m2, rel=1e-3)
+
+
+def test_each_zone_is_outlined_on_a_frozen_layer(tmp_path: Path) -> None:
+    result = area_of_interest(plans.two_rooms(760.0).plan, settings=Settings(step_mm=20.0))
+    document = written(result, tmp_path / "a.dxf")
+    assert document.layers.get("SATAOI-ZONE").is_frozen()
+    numbers = {facts_of(entity)["zone"] for entity in on_layer(document, "SATAOI-ZONE")}
+    assert numbers == set(range(1, len(result.zones) + 1))
+
+
+def test_every_hatch_carries_facts(tmp_path: Path) -> None:
+    # a hatch without extended data makes one reader lose the entity that follows it
+    document = written(results.furnished_result(), tmp_path / "a.dxf")
+    assert all(hatch.has_xdata("SATAOI") for hatch in document.modelspace().query("HATCH"))
 
 
 # --- what is drawn around it -----------------------------------------------------------------
@@ -383,6 +456,9 @@ def test_layer_names_are_ascii(drawn: Result, tmp_path: Path) -> None:
     assert ours == {
         "SATAOI-AOI",
         "SATAOI-AOI-EDGE",
+        "SATAOI-UNREACHED",
+        "SATAOI-UPPER",
+        "SATAOI-ZONE",
         "SATAOI-START",
         "SATAOI-OBSTACLE",
         "SATAOI-NOTE",

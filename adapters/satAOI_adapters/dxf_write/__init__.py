@@ -3,8 +3,11 @@
 The input, where it is a DXF, is kept whole underneath; any other plan is first drawn on layers
 named FLOOR, WALL, COLUMN and so on, so that the drawing can be read again. On top come:
 
-    SATAOI-AOI         one solid hatch for each connected part, below everything else
+    SATAOI-AOI         one solid hatch for each connected part; hatches lie below everything else
     SATAOI-AOI-EDGE    its outline, closed polylines with true arcs
+    SATAOI-UNREACHED   free floor that is not reached, with area and reason of each patch
+    SATAOI-UPPER       the same where only the disc-connected estimate claims it
+    SATAOI-ZONE        outline of what each set-down can trowel; the layer is frozen
     SATAOI-START       the disc at the start
     SATAOI-OBSTACLE    floor and obstacles as they were read, coloured by kind
     SATAOI-NOTE        legend and figures beside the plan
@@ -19,7 +22,15 @@ from satAOI_adapters.dxf_write.document import base_document, file_bytes
 from satAOI_adapters.dxf_write.layers import add_layers
 from satAOI_adapters.dxf_write.metadata import add_appid, record_run
 from satAOI_adapters.dxf_write.note import draw_note
-from satAOI_adapters.dxf_write.scene import draw_area, draw_plan, draw_start, send_to_back
+from satAOI_adapters.dxf_write.place import floor_bounds, text_height
+from satAOI_adapters.dxf_write.scene import (
+    draw_area,
+    draw_plan,
+    draw_start,
+    draw_unreached,
+    draw_zones,
+    send_to_back,
+)
 from satAOI_adapters.files import refuse_unfit_target, written_whole
 from satAOI_geo.pipeline import Result
 
@@ -47,9 +58,11 @@ def write(path: Path, result: Result) -> None:
     add_appid(document)
     space = document.modelspace()
     draw_plan(space, result)
+    draw_zones(space, result)
     hatches = draw_area(space, result)
+    hatches += draw_unreached(space, result, text_height(floor_bounds(result.plan)))
     draw_start(space, result)
-    draw_note(document, result)
+    draw_note(space, result)
     send_to_back(document, hatches)
     record_run(document, result)
     data = file_bytes(document)

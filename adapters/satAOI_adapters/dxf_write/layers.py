@@ -19,6 +19,7 @@ class Style:
         name: Of the layer.
         colour: AutoCAD colour index, 1 to 255.
         rgb: The same more exactly, for programs that know true colours, or None.
+        frozen: Whether the layer stays out of sight until it is asked for.
         lineweight: In hundredths of a millimetre on paper.
         description: For the layer manager.
     """
@@ -28,20 +29,34 @@ class Style:
     lineweight: int
     description: str
     rgb: tuple[int, int, int] | None = None
+    frozen: bool = False
 
 
 AOI: Final = Style(
     "SATAOI-AOI", 71, 13, "floor the robot can trowel, one hatch a part", rgb=(197, 232, 183)
 )
 EDGE: Final = Style("SATAOI-AOI-EDGE", 94, 50, "outline of that floor, with true arcs")
+UNREACHED: Final = Style(
+    "SATAOI-UNREACHED", 41, 13, "free floor left for hand finishing", rgb=(255, 236, 190)
+)
+UPPER: Final = Style(
+    "SATAOI-UPPER", 31, 13, "what only the disc-connected estimate claims", rgb=(255, 205, 145)
+)
+ZONE: Final = Style("SATAOI-ZONE", 150, 25, "what each set-down can trowel", frozen=True)
 START: Final = Style("SATAOI-START", 6, 35, "disc of the robot where it starts")
 OBSTACLE: Final = Style("SATAOI-OBSTACLE", 8, 25, "floor and obstacles as they were read")
 NOTE: Final = Style("SATAOI-NOTE", 7, 18, "legend and figures")
 
-STYLES: Final = (AOI, EDGE, START, OBSTACLE, NOTE)
+STYLES: Final = (AOI, EDGE, UNREACHED, UPPER, ZONE, START, OBSTACLE, NOTE)
 
-AOI_TRANSPARENCY: Final = 0.5
-"""For programs that know it; the others show the walls because the fill is the first entity."""
+TRANSPARENCY: Final = 0.5
+"""Of fills, in programs that know it; the others show the walls because fills come first."""
+
+TEXT_STYLE: Final = "SATAOI"
+FONT: Final = "arial.ttf"
+
+LABEL_COLOUR: Final = 8
+"""Of labels on fills: grey, to be read on both a white and a black screen."""
 
 KIND_COLOURS: Final = {
     Kind.WALL: 1,
@@ -55,16 +70,20 @@ KIND_COLOURS: Final = {
 
 
 def add_layers(document: Drawing) -> None:
-    """Create the layers, or give those of an earlier run their looks again, switched on."""
+    """Create text style and layers, or give those of an earlier run their looks again."""
+    if TEXT_STYLE not in document.styles:
+        document.styles.add(TEXT_STYLE, font=FONT)
     for style in STYLES:
         layer = (
             document.layers.get(style.name)
             if style.name in document.layers
             else document.layers.add(style.name)
         )
+        layer.color = style.colour
         layer.on()
         layer.thaw()
-        layer.color = style.colour
+        if style.frozen:
+            layer.freeze()
         if style.rgb:
             layer.rgb = style.rgb
         layer.dxf.lineweight = style.lineweight

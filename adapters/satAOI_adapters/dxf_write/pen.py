@@ -11,13 +11,22 @@ from ezdxf.lldxf.const import (
     BOUNDARY_PATH_EXTERNAL,
     BOUNDARY_PATH_OUTERMOST,
 )
-from shapely.geometry import LineString
+from shapely.geometry import LineString, Polygon
 
 from satAOI_geo.aoi import Loop, Outline
 from satAOI_geo.plan import Circle, FloatArray, Frame, Shape
 
 BYLAYER: Final = 256
 """The colour index that means: as the layer."""
+
+
+def outline_of(polygon: Polygon) -> Outline:
+    """A polygon as an outline of straight lines."""
+    exterior, *holes = (
+        np.insert(np.array(ring.coords)[:-1, :2], 2, 0.0, axis=1)
+        for ring in (polygon.exterior, *polygon.interiors)
+    )
+    return Outline(Loop(exterior), tuple(map(Loop, holes)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,6 @@
 """Where the floor lies in the drawing, and where beside it there is room for a note."""
 
+import math
 from collections.abc import Iterator
 from typing import TypeAlias
 
@@ -20,6 +21,12 @@ def floor_bounds(plan: FloorPlan) -> Bounds:
     corners = plan.frame.to_drawing(shapely.get_coordinates(plan.floor))
     (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
     return float(left), float(bottom), float(right), float(top)
+
+
+def text_height(plan: Bounds) -> float:
+    """Letters that can be read when the plan fills a sheet, in drawing units."""
+    width, height = plan[2] - plan[0], plan[3] - plan[1]
+    return max(math.sqrt(width * height) / 60, max(width, height) / 150)
 
 
 def corners_of(bounds: Bounds) -> FloatArray:

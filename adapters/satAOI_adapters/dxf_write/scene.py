@@ -1,24 +1,43 @@
-"""What is drawn over the plan: fill and outline of the area, the start, and what was read."""
+"""What is drawn over the plan: the area, what it leaves, the start, and what was read."""
 
+import math
 from typing import Final
 
 from ezdxf.document import Drawing
 from ezdxf.entities import DXFGraphic
 from ezdxf.layouts import Modelspace
+from ezdxf.lldxf.const import MTEXT_MIDDLE_CENTER
 
 from satAOI_adapters.dxf_write.layers import (
     AOI,
-    AOI_TRANSPARENCY,
     EDGE,
     KIND_COLOURS,
+    LABEL_COLOUR,
     OBSTACLE,
     START,
+    TEXT_STYLE,
+    TRANSPARENCY,
+    UNREACHED,
+    UPPER,
+    ZONE,
+    Style,
 )
-from satAOI_adapters.dxf_write.metadata import attach
-from satAOI_adapters.dxf_write.pen import Pen
+from satAOI_adapters.dxf_write.metadata import Facts, attach
+from satAOI_adapters.dxf_write.pen import Pen, outline_of
+from satAOI_geo.aoi import Outline
 from satAOI_geo.pipeline import Result
 from satAOI_geo.plan import polygons_in
+from satAOI_geo.reasons import Patch, Reason
 from satAOI_geo.units import MM2_PER_M2
+
+DRAWN_MM: Final = 0.1
+"""How far the drawn edge of a patch may be from the true one; the report has the exact area."""
+
+LABELLED_MM2: Final = 10_000.0
+"""Patches below this have no label: it would read 0.00 m² or hardly more."""
+
+LETTERS_ACROSS: Final = 9
+"""Letters for which a patch must have room side by side."""
 
 SORT_WHEN_DRAWN: Final = 16 | 32
 """Bits of the header variable $SORTENTS: keep the redraw order on the screen and on paper."""
@@ -29,7 +48,6 @@ def draw_area(space: Modelspace, result: Result) -> list[DXFGraphic]:
 
     Two parts in one hatch would be read by some programs as one part with a hole beside it.
     """
-    fill_pen = Pen(space, result.plan.frame, AOI.name)
     edge_pen = Pen(space, result.plan.frame, EDGE.name)
     hatches: list[DXFGraphic] = []
     for number, outline in enumerate(result.aoi.outlines, start=1):
@@ -39,14 +57,47 @@ def draw_area(space: Modelspace, result: Result) -> list[DXFGraphic]:
             "connectivity": result.settings.connectivity,
             "robot": result.robot.name,
         }
-        hatch = fill_pen.fill(outline)
-        hatch.transparency = AOI_TRANSPARENCY
-        # one reader swallows the entity after a hatch without extended data
-        attach(hatch, facts)
-        hatches.append(hatch)
+        hatches.append(_filled(space, result, AOI, outline, facts))
         for loop in (outline.exterior, *outline.holes):
             attach(edge_pen.loop(loop), {"part": number})
     return hatches
+
+
+def draw_unreached(space: Modelspace, result: Result, letter: float) -> list[DXFGraphic]:
+    """Fill and label the free floor that is not reached; the hatches are returned.
+
+    Strips narrower and specks smaller than a lattice cell are left to the report.
+
+    Args:
+        space: Where to draw.
+        result: The area of interest and the patches beside it.
+        letter: Greatest height of a label, in drawing units.
+    """
+    hatches: list[DXFGraphic] = []
+    for patch in result.patches:
+        if patch.narrow or patch.area_mm2 < result.lattice.step_mm**2:
+            continue
+        facts = {
+            "area_m2": patch.area_mm2 / MM2_PER_M2,
+            "reason": patch.reason.value,
+            "blocker": patch.blocker.handle if patch.blocker else "",
+        }
+        style = UPPER if patch.reason is Reason.PATH else UNREACHED
+        polygons = polygons_in([patch.region.simplify(DRAWN_MM)])
+        hatches += [_filled(space, result, style, outline_of(p), facts) for p in polygons]
+        if patch.area_mm2 >= LABELLED_MM2:
+            _label(space, result, patch, letter)
+    return hatches
+
+
+def draw_zones(space: Modelspace, result: Result) -> None:
+    """Draw the outline of what each set-down can trowel."""
+    pen = Pen(space, result.plan.frame, ZONE.name)
+    for number, zone in enumerate(result.zones, start=1):
+        facts = {"zone": number, "area_m2": zone.aoi.area_mm2 / MM2_PER_M2}
+        for outline in zone.aoi.outlines:
+            for loop in (outline.exterior, *outline.holes):
+                attach(pen.loop(loop), facts)
 
 
 def draw_start(space: Modelspace, result: Result) -> None:
@@ -81,7 +132,7 @@ def draw_plan(space: Modelspace, result: Result) -> None:
 
 
 def send_to_back(document: Drawing, hatches: list[DXFGraphic]) -> None:
-    """Put hatches below everything else, for programs that keep either of the two orders.
+    """Put hatches below everything else, the first of them lowest.
 
     Some draw entities in the order of the file and know no transparency, others by a table of
     handles. The table deals the handles in use out again in the new order, as those programs do.
@@ -95,6 +146,34 @@ def send_to_back(document: Drawing, hatches: list[DXFGraphic]) -> None:
     entities = space.entity_space.entities
     entities[:] = [*hatches, *(e for e in entities if e.dxf.handle not in behind)]
     document.header["$SORTENTS"] = document.header.get("$SORTENTS", 0) | SORT_WHEN_DRAWN
+
+
+def _filled(
+    space: Modelspace, result: Result, style: Style, outline: Outline, facts: Facts
+) -> DXFGraphic:
+    """A hatch on a layer that says what it stands for."""
+    hatch = Pen(space, result.plan.frame, style.name).fill(outline)
+    hatch.transparency = TRANSPARENCY
+    # one reader swallows the entity after a hatch without extended data
+    attach(hatch, facts)
+    return hatch
+
+
+def _label(space: Modelspace, result: Result, patch: Patch, letter: float) -> None:
+    """Write area and reason into a patch, no larger than it has room for."""
+    frame = result.plan.frame
+    room = math.sqrt(patch.area_mm2) / frame.mm_per_unit / LETTERS_ACROSS
+    space.add_mtext(
+        f"{patch.area_mm2 / MM2_PER_M2:.2f} m²\\P{patch.reason.value}",
+        dxfattribs={
+            "layer": UNREACHED.name,
+            "style": TEXT_STYLE,
+            "color": LABEL_COLOUR,
+            "char_height": min(letter, room),
+            "attachment_point": MTEXT_MIDDLE_CENTER,
+            "insert": tuple(frame.to_drawing(patch.label_mm)),
+        },
+    )
 
 
 def _as_number(handle: str) -> int:
