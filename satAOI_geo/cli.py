@@ -7,15 +7,27 @@ runs, so that `--help` answers at once.
 import math
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final, Unpack
 
 import rich_click as click
 
 from satAOI_geo import __version__
 from satAOI_geo.errors import DrawingError, InputError, LimitError, SatAoiError, StartError
-from satAOI_geo.units import MM_PER_UNIT
+from satAOI_geo.options import (
+    AT,
+    EXACT_OUTLINE,
+    OUTPUTS,
+    PLAN,
+    QUESTION,
+    QUIET,
+    READING,
+    STRICT,
+    Outputs,
+    Question,
+    Reading,
+    taking,
+)
 
 if TYPE_CHECKING:
     from satAOI_geo.pipeline import Result
@@ -33,7 +45,7 @@ EXIT_CODES: Final[dict[type[SatAoiError], int]] = {
 
 STANDARD_OUTPUT: Final = Path("-")
 
-EPILOG = (
+EPILOG: Final = (
     "Exit codes: 0 done; 1 findings, with --strict; 2 usage; 3 drawing unusable; "
     "4 start blocked or nothing reachable; 5 a limit was reached; 130 interrupted."
 )
@@ -73,59 +85,10 @@ class DefaultRun(click.RichGroup):
         return super().parse_args(ctx, args)
 
 
-def point(
-    context: click.Context, parameter: click.Parameter, text: str | None
-) -> tuple[float, float] | None:
-    """The two numbers of a point written `X,Y`."""
-    if text is None:
-        return None
-    try:
-        x, y = (float(number) for number in text.split(","))
-    except ValueError as error:
-        message = f"'{text}' is not two numbers with a comma, as in 3200,1500.5"
-        raise click.BadParameter(message, ctx=context, param=parameter) from error
-    return x, y
-
-
-def direction(context: click.Context, parameter: click.Parameter, text: str | None) -> float | None:
-    """The lattice's direction in degrees; None to find it."""
-    if text is None or text == "auto":
-        return None
-    try:
-        return 0.0 if text == "none" else float(text)
-    except ValueError as error:
-        message = f"'{text}' is neither an angle in degrees nor auto nor none"
-        raise click.BadParameter(message, ctx=context, param=parameter) from error
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Outputs:
-    """Where the results go; None where one is not asked for.
-
-    Attributes:
-        drawing: The area of interest drawn into the plan.
-        report: The figures as JSON; `-` is standard output.
-        raster: The area of interest as a picture or an array.
-    """
-
-    drawing: Path | None = None
-    report: Path | None = None
-    raster: Path | None = None
-
-    @property
-    def asked(self) -> list[Path]:
-        """Those that are asked for."""
-        return [path for path in (self.drawing, self.report, self.raster) if path is not None]
-
-    @property
-    def files(self) -> list[Path]:
-        """Those that go to a file."""
-        return [path for path in self.asked if path != STANDARD_OUTPUT]
-
-
 @click.group(
     cls=DefaultRun,
     context_settings={"help_option_names": ["-h", "--help"]},
+    subcommand_metavar="PLAN | COMMAND ...",
     epilog=EPILOG,
 )
 @click.version_option(__version__, prog_name="satAOI-geo", message="%(prog)s %(version)s")
@@ -139,136 +102,71 @@ def commands() -> None:
 
 
 @commands.command(epilog=EPILOG)
-@click.argument("plan", type=click.Path(path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    metavar="FILE.dxf",
-    type=click.Path(path_type=Path),
-    help="Draw the area of interest into a copy of the plan, e.g. --output aoi.dxf",
-)
-@click.option(
-    "--report",
-    metavar="FILE.json",
-    type=click.Path(path_type=Path, allow_dash=True),
-    help="Write all figures and findings as JSON, e.g. --report figures.json; "
-    "--report - writes to standard output.",
-)
-@click.option(
-    "--raster",
-    metavar="FILE.png|.npz",
-    type=click.Path(path_type=Path),
-    help="Write the area of interest cell by cell, e.g. --raster aoi.png as a picture or "
-    "--raster aoi.npz as arrays.",
-)
-@click.option(
-    "--start",
-    metavar="X,Y",
-    callback=point,
-    help="Where the disc's centre is set down, in drawing units, e.g. --start 3200,1500.5. "
-    "Without it: the mark on layer SATAOI-START; without a mark, where the area is largest.",
-)
-@click.option(
-    "--robot",
-    metavar="NAME|FILE.toml",
-    default="magicbim",
-    show_default=True,
-    help="A robot of this build (satAOI-geo robots) or a file with its measures, "
-    "e.g. --robot mine.toml",
-)
-@click.option(
-    "--connectivity",
-    type=click.Choice(["pose", "disc"]),
-    default="pose",
-    show_default=True,
-    help="What joins neighbouring disc positions: that the robot can move from the one to the "
-    "other, or that it can stand at each, which is an upper estimate, e.g. --connectivity disc",
-)
-@click.option(
-    "--clearance",
-    metavar="MM",
-    type=float,
-    default=0.0,
-    show_default=True,
-    help="Distance the robot keeps from every obstacle, in mm, e.g. --clearance 20",
-)
-@click.option(
-    "--step",
-    metavar="MM",
-    type=float,
-    default=10.0,
-    show_default=True,
-    help="Distance between neighbouring disc positions, in mm, e.g. --step 20",
-)
-@click.option(
-    "--directions",
-    metavar="N",
-    type=int,
-    default=24,
-    show_default=True,
-    help="Directions of arm and vehicle in a full turn, a multiple of 4, e.g. --directions 36",
-)
-@click.option(
-    "--align",
-    metavar="DEG|auto|none",
-    show_default="auto",
-    callback=direction,
-    help="Direction of the disc positions' rows in the drawing: that of most of the walls, along "
-    "the drawing's axes, or an angle in degrees, e.g. --align 33.3",
-)
-@click.option(
-    "--units",
-    metavar="UNIT",
-    type=click.Choice(list(MM_PER_UNIT)),
-    help="The drawing's unit of length, whatever its header says, e.g. --units mm; "
-    f"one of {', '.join(MM_PER_UNIT)}.",
-)
-@click.option(
-    "--layers",
-    metavar="FILE.toml",
-    type=click.Path(path_type=Path),
-    help="Which layers are walls, columns, floor ..., e.g. --layers office.toml; "
-    "satAOI-geo inspect tells how layers are read.",
-)
-@click.option(
-    "--engine",
-    type=click.Choice(["fast", "reference"]),
-    default="fast",
-    show_default=True,
-    help="How poses are tested: row intervals, or one pose at a time, for audits of small plans, "
-    "e.g. --engine reference. Both give the same answer.",
-)
-@click.option(
-    "--exact-outline",
-    is_flag=True,
-    help="Keep the waves of up to 0.05 mm that the disc positions leave along the outline.",
-)
-@click.option("--strict", is_flag=True, help="End with exit code 1 when there are findings.")
-@click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors.")
-def run(  # noqa: PLR0913  one parameter an option
+@taking(PLAN, OUTPUTS, EXACT_OUTLINE, READING, QUESTION, STRICT, QUIET)
+def run(
     *,
     plan: Path,
     output: Path | None,
     report: Path | None,
     raster: Path | None,
-    start: tuple[float, float] | None,
-    robot: str,
-    connectivity: Literal["pose", "disc"],
-    clearance: float,
-    step: float,
-    directions: int,
-    align: float | None,
+    exact_outline: bool,
     units: str | None,
     layers: Path | None,
-    engine: Literal["fast", "reference"],
-    exact_outline: bool,
     strict: bool,
     quiet: bool,
+    **question: Unpack[Question],
 ) -> int:
     """Find the area of interest on a floor plan.
 
     Without --output, --report and --raster the figures are printed and nothing is written.
     """
+    outputs = Outputs(output=output, report=report, raster=raster)
+    read = [path for path in (plan, Path(question["robot"]), layers) if path is not None]
+    refuse_early(outputs, read)
+    result = answer(
+        plan,
+        Reading(units=units, layers=layers),
+        question,
+        exact_outline=exact_outline,
+        quiet=quiet,
+    )
+    write(result, outputs)
+    tell(result, outputs, quiet=quiet)
+    return FINDINGS if strict and result.report.findings else DONE
+
+
+@commands.command()
+@taking(PLAN, AT, READING, QUESTION, QUIET)
+def explain(
+    *,
+    plan: Path,
+    at: tuple[float, float],
+    units: str | None,
+    layers: Path | None,
+    quiet: bool,
+    **question: Unpack[Question],
+) -> int:
+    """Say in one sentence why a point is, or is not, in the area of interest.
+
+    satAOI-geo explain plan.dxf --at 3200,1500.5
+    """
+    from satAOI_geo.explain import explain as sentence_for
+
+    result = answer(plan, Reading(units=units, layers=layers), question, quiet=quiet)
+    x_mm, y_mm = result.plan.frame.to_local_mm(at).tolist()
+    click.echo(sentence_for(result, (x_mm, y_mm)))
+    return DONE
+
+
+def answer(
+    plan: Path,
+    reading: Reading,
+    question: Question,
+    *,
+    exact_outline: bool = False,
+    quiet: bool,
+) -> "Result":
+    """Read a plan and find the area of interest on it."""
     from satAOI_adapters import kernel_cache, read_plan
     from satAOI_adapters.dxf_read import ReadOptions
     from satAOI_adapters.robot_read import robot_from
@@ -279,34 +177,30 @@ def run(  # noqa: PLR0913  one parameter an option
     from satAOI_geo.search import Settings
     from satAOI_geo.start import StartMark
 
-    outputs = Outputs(drawing=output, report=report, raster=raster)
-    refuse_early(outputs, read=[plan, Path(robot), *([layers] if layers else [])])
-    chosen_robot = robot_from(robot)
+    robot = robot_from(question["robot"])
+    align_deg = question["align"]
     settings = Settings(
-        connectivity=connectivity,
-        step_mm=step,
-        n_directions=directions,
-        clearance_mm=clearance,
-        align_rad=None if align is None else math.radians(align),
-        engine=engine,
+        connectivity=question["connectivity"],
+        step_mm=question["step"],
+        n_directions=question["directions"],
+        clearance_mm=question["clearance"],
+        align_rad=None if align_deg is None else math.radians(align_deg),
+        engine=question["engine"],
         exact_outline=exact_outline,
     )
-    floor_plan = read_plan(plan, ReadOptions(units=units, layers=layers))
+    floor_plan = read_plan(plan, ReadOptions(**reading))
     mark = None
-    if start is not None:
-        x_mm, y_mm = floor_plan.frame.to_local_mm(start).tolist()
+    if question["start"] is not None:
+        x_mm, y_mm = floor_plan.frame.to_local_mm(question["start"]).tolist()
         mark = StartMark((x_mm, y_mm))
     if not (compiled or quiet):
         say_note("first run of this version: compiling takes some seconds, once")
     with progress(quiet=quiet) as told:
-        result = area_of_interest(floor_plan, chosen_robot, settings, start=mark, progress=told)
-    write(result, outputs)
-    tell(result, outputs, quiet=quiet)
-    return FINDINGS if strict and result.report.findings else DONE
+        return area_of_interest(floor_plan, robot, settings, start=mark, progress=told)
 
 
-def refuse_early(outputs: Outputs, *, read: list[Path]) -> None:
-    """Refuse outputs that could not be written before any work is done for them.
+def refuse_early(outputs: Outputs, read: list[Path]) -> None:
+    """Refuse outputs that could not be written, before any work is done for them.
 
     Raises:
         InputError: If one has a suffix that no writer knows, is an input, is asked for twice, or
@@ -315,28 +209,34 @@ def refuse_early(outputs: Outputs, *, read: list[Path]) -> None:
     from satAOI_adapters import writer_of
     from satAOI_adapters.files import refuse_unfit_target
 
-    for path in (outputs.drawing, outputs.raster):
+    for path in (outputs["output"], outputs["raster"]):
         if path is not None:
             writer_of(path)
-    written: list[Path] = []
-    for path in outputs.files:
+    seen: list[Path] = []
+    for path in files_of(outputs):
         refuse_unfit_target(path, read)
-        if path.absolute() in written:
+        if path.absolute() in seen:
             raise InputError(f"'{path}' is asked for twice; give each output a name of its own")
-        written.append(path.absolute())
+        seen.append(path.absolute())
+
+
+def files_of(outputs: Outputs) -> list[Path]:
+    """The files to be written."""
+    asked = (outputs["output"], outputs["report"], outputs["raster"])
+    return [path for path in asked if path not in {None, STANDARD_OUTPUT}]
 
 
 def write(result: "Result", outputs: Outputs) -> None:
     """Write what was asked for, each file whole or not at all."""
     from satAOI_adapters import report_write, write_aoi
 
-    for path in (outputs.drawing, outputs.raster):
+    for path in (outputs["output"], outputs["raster"]):
         if path is not None:
             write_aoi(path, result)
-    if outputs.report == STANDARD_OUTPUT:
-        sys.stdout.write(report_write.json_of(result.report))
-    elif outputs.report is not None:
-        report_write.write(outputs.report, result.report)
+    if outputs["report"] == STANDARD_OUTPUT:
+        click.echo(report_write.json_of(result.report), nl=False)
+    elif outputs["report"] is not None:
+        report_write.write(outputs["report"], result.report)
 
 
 def tell(result: "Result", outputs: Outputs, *, quiet: bool) -> None:
@@ -347,30 +247,24 @@ def tell(result: "Result", outputs: Outputs, *, quiet: bool) -> None:
     from satAOI_adapters.report_write import lines_of
     from satAOI_adapters.terminal import say_findings, say_note, write_table
 
-    if not quiet:
-        say_findings(result.report.findings)
-    if not outputs.asked:
+    alone = not any(outputs.values())
+    if alone:
         write_table(lines_of(result.report), sys.stdout)
     if quiet:
         return
-    if outputs.asked:
-        write_table(lines_of(result.report), sys.stderr)
-    for path in outputs.files:
-        say_note(f"wrote {path}")
-    if not outputs.asked:
+    say_findings(result.report.findings)
+    if alone:
         say_note("no file was written; --output FILE.dxf draws the area into the plan")
+    else:
+        write_table(lines_of(result.report), sys.stderr)
+    for path in files_of(outputs):
+        say_note(f"wrote {path}")
 
 
 @commands.command()
-@click.option(
-    "-o",
-    "--output",
-    metavar="FILE.dxf",
-    type=click.Path(path_type=Path),
-    help="Draw the area of interest into a copy of the plan, e.g. --output demo.dxf",
-)
+@taking(OUTPUTS)
 @click.pass_context
-def demo(context: click.Context, output: Path | None) -> int:
+def demo(context: click.Context, **outputs: Unpack[Outputs]) -> int:
     """Find the area of interest on a plan that comes with the program.
 
     satAOI-geo demo -o demo.dxf
@@ -378,7 +272,7 @@ def demo(context: click.Context, output: Path | None) -> int:
     from importlib.resources import as_file, files
 
     with as_file(files("satAOI_adapters") / "demo" / "hall_medium.dxf") as plan:
-        code: int = context.invoke(run, plan=plan, output=output)
+        code: int = context.invoke(run, plan=plan, **outputs)
     return code
 
 
@@ -394,7 +288,7 @@ def robots(name: str | None) -> int:
     from satAOI_geo.robot import ROBOTS
 
     if name is not None:
-        sys.stdout.write(toml_of(robot_from(name)))
+        click.echo(toml_of(robot_from(name)), nl=False)
         return DONE
     heads = ("name", "vehicle mm", "pivot offset mm", "arm mm", "disc radius mm")
     rows = [

@@ -186,6 +186,7 @@ def test_strict_tells_findings_by_its_exit_code(
         (["--start", "1"], 2, "'1' is not two numbers with a comma"),
         (["--start", "1;2"], 2, "'1;2' is not two numbers with a comma"),
         (["--step", "0"], 2, "0"),
+        (["--align", "up"], 2, "'up' is neither an angle"),
         (["--step", "ten"], 2, "'ten' is not a valid float"),
         (["--directions", "7"], 2, "multiple of 4"),
         (["--clearance", "-1"], 2, "clearance"),
@@ -340,6 +341,39 @@ def test_every_command_has_help(name: str, capsys: pytest.CaptureFixture[str]) -
 def test_the_version_is_the_packages(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"satAOI-geo {satAOI_geo.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    ("at", "word"),
+    [
+        ("1,1", "trowels"),
+        ("2.85,2.85", "COLUMN"),
+        ("-0.99,-0.99", "left over"),
+        ("9,9", "not on the floor"),
+    ],
+)
+def test_a_point_is_explained_in_a_sentence(
+    at: str, word: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan = drawn_room(tmp_path / "room.dxf", insunits=6, unit_mm=1000)
+    assert main(["explain", str(plan), "--at", at, "--step", "100"]) == 0
+    said = capsys.readouterr()
+    assert word in said.out
+    assert len(said.out.splitlines()) == 1
+
+
+def test_an_explanation_needs_a_point(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", str(room)]) == 2
+    assert "--at" in the_error(capsys)
+
+
+def test_the_lattice_lies_as_it_is_told(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    turned = figures(capsys, room, "--step", 100, "--align", "30")["lattice"]
+    assert turned["turn_deg"] == pytest.approx(30)
+    straight = figures(capsys, room, "--step", 100, "--align", "none")["lattice"]
+    assert straight["turn_deg"] == 0
+    found = figures(capsys, room, "--step", 100)["lattice"]
+    assert (found["turn_deg"], found["turn_source"]) == (0, "walls")
 
 
 def test_the_robots_are_listed(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,0 +1,235 @@
+"""The options of the command line: their names, their help, and what they hand on.
+
+Options that belong together form a group; a command names the groups it takes and receives their
+values as keywords, typed by the group's `TypedDict`.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final, Literal, TypeAlias, TypedDict, TypeVar
+
+import rich_click as click
+
+from satAOI_geo.units import MM_PER_UNIT
+
+CommandT = TypeVar("CommandT", bound=Callable[..., Any])
+Group: TypeAlias = tuple[Callable[[Any], Any], ...]
+
+FILE: Final = click.Path(path_type=Path)
+POINT: Final = "X,Y"
+
+
+def taking(*groups: Group) -> Callable[[CommandT], CommandT]:
+    """A decorator that gives a command the options of some groups, in this order."""
+
+    def decorate(command: CommandT) -> CommandT:
+        for decorator in reversed([decorator for group in groups for decorator in group]):
+            command = decorator(command)
+        return command
+
+    return decorate
+
+
+def point(
+    context: click.Context, parameter: click.Parameter, text: str | None
+) -> tuple[float, float] | None:
+    """The two numbers of a point written `X,Y`."""
+    if text is None:
+        return None
+    try:
+        x, y = (float(number) for number in text.split(","))
+    except ValueError as error:
+        message = f"'{text}' is not two numbers with a comma, as in 3200,1500.5"
+        raise click.BadParameter(message, ctx=context, param=parameter) from error
+    return x, y
+
+
+def direction(context: click.Context, parameter: click.Parameter, text: str | None) -> float | None:
+    """The lattice's direction in degrees; None to find it."""
+    if text is None or text == "auto":
+        return None
+    try:
+        return 0.0 if text == "none" else float(text)
+    except ValueError as error:
+        message = f"'{text}' is neither an angle in degrees nor auto nor none"
+        raise click.BadParameter(message, ctx=context, param=parameter) from error
+
+
+PLAN: Final[Group] = (click.argument("plan", type=FILE),)
+
+
+class Outputs(TypedDict):
+    """Where the results go; None where one is not asked for, `-` for standard output."""
+
+    output: Path | None
+    report: Path | None
+    raster: Path | None
+
+
+OUTPUTS: Final[Group] = (
+    click.option(
+        "-o",
+        "--output",
+        metavar="FILE.dxf",
+        type=FILE,
+        panel="Outputs",
+        help="Draw the area of interest into a copy of the plan, e.g. --output aoi.dxf",
+    ),
+    click.option(
+        "--report",
+        metavar="FILE.json",
+        type=FILE,
+        panel="Outputs",
+        help="Write all figures and findings as JSON, e.g. --report figures.json; "
+        "--report - writes to standard output.",
+    ),
+    click.option(
+        "--raster",
+        metavar="FILE.png|.npz",
+        type=FILE,
+        panel="Outputs",
+        help="Write the area of interest cell by cell, e.g. --raster aoi.png as a picture or "
+        "--raster aoi.npz as arrays.",
+    ),
+)
+
+
+class Reading(TypedDict):
+    """How the drawing is read."""
+
+    units: str | None
+    layers: Path | None
+
+
+READING: Final[Group] = (
+    click.option(
+        "--units",
+        metavar="UNIT",
+        type=click.Choice(list(MM_PER_UNIT)),
+        panel="The drawing",
+        help="The drawing's unit of length, whatever its header says, e.g. --units mm; "
+        f"one of {', '.join(MM_PER_UNIT)}.",
+    ),
+    click.option(
+        "--layers",
+        metavar="FILE.toml",
+        type=FILE,
+        panel="The drawing",
+        help="Which layers are walls, columns, floor and so on, e.g. --layers office.toml; "
+        "satAOI-geo inspect tells how they are read.",
+    ),
+)
+
+
+class Question(TypedDict):
+    """What is asked about the plan; start in drawing units, align in degrees."""
+
+    start: tuple[float, float] | None
+    robot: str
+    connectivity: Literal["pose", "disc"]
+    clearance: float
+    step: float
+    directions: int
+    align: float | None
+    engine: Literal["fast", "reference"]
+
+
+QUESTION: Final[Group] = (
+    click.option(
+        "--start",
+        metavar=POINT,
+        callback=point,
+        panel="The robot",
+        help="Where the disc's centre is set down, in drawing units, e.g. --start 3200,1500.5. "
+        "Without it: the mark on layer SATAOI-START; without a mark, where the area is largest.",
+    ),
+    click.option(
+        "--robot",
+        metavar="NAME|FILE.toml",
+        default="magicbim",
+        show_default=True,
+        panel="The robot",
+        help="A robot of this build (satAOI-geo robots) or a file with its measures, "
+        "e.g. --robot mine.toml",
+    ),
+    click.option(
+        "--clearance",
+        metavar="MM",
+        type=float,
+        default=0.0,
+        show_default=True,
+        panel="The robot",
+        help="Distance the robot keeps from every obstacle, e.g. --clearance 20",
+    ),
+    click.option(
+        "--connectivity",
+        type=click.Choice(["pose", "disc"]),
+        default="pose",
+        show_default=True,
+        panel="The search",
+        help="What joins neighbouring disc positions: that the robot can move from the one to "
+        "the other, or only that it can stand at each, an upper estimate, "
+        "e.g. --connectivity disc",
+    ),
+    click.option(
+        "--step",
+        metavar="MM",
+        type=float,
+        default=10.0,
+        show_default=True,
+        panel="The search",
+        help="Distance between neighbouring disc positions, e.g. --step 20",
+    ),
+    click.option(
+        "--directions",
+        metavar="N",
+        type=int,
+        default=24,
+        show_default=True,
+        panel="The search",
+        help="Directions of arm and vehicle in a full turn, a multiple of 4, e.g. --directions 36",
+    ),
+    click.option(
+        "--align",
+        metavar="DEG|auto|none",
+        show_default="auto",
+        callback=direction,
+        panel="The search",
+        help="Direction of the rows of disc positions in the drawing: that of most of the walls, "
+        "along the drawing's axes, or an angle in degrees, e.g. --align 33.3",
+    ),
+    click.option(
+        "--engine",
+        type=click.Choice(["fast", "reference"]),
+        default="fast",
+        show_default=True,
+        panel="The search",
+        help="How poses are tested: row intervals, or one pose at a time, for audits of small "
+        "plans, e.g. --engine reference. Both give the same answer.",
+    ),
+)
+
+EXACT_OUTLINE: Final[Group] = (
+    click.option(
+        "--exact-outline",
+        is_flag=True,
+        panel="Outputs",
+        help="Keep the waves of up to 0.05 mm that the disc positions leave along the outline.",
+    ),
+)
+
+STRICT: Final[Group] = (
+    click.option("--strict", is_flag=True, help="End with exit code 1 when there are findings."),
+)
+
+QUIET: Final[Group] = (click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors."),)
+
+AT: Final[Group] = (
+    click.option(
+        "--at",
+        metavar=POINT,
+        required=True,
+        callback=point,
+        help="The point asked about, in drawing units, e.g. --at 3200,1500.5",
+    ),
+)
