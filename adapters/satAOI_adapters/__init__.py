@@ -60,7 +60,7 @@ def _read_dxf(path: Path, options: ReadOptions) -> FloorPlan:
 def _read_ifc(path: Path, options: ReadOptions) -> FloorPlan:
     from satAOI_adapters import ifc_read
 
-    return ifc_read.read(path, options)
+    return ifc_read.read(path, ifc_read.IfcOptions(units=options.units))
 
 
 def _write_dxf(path: Path, result: Result) -> None:

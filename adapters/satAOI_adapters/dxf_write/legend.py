@@ -1,7 +1,7 @@
 """What the note says: the legend and the figures of a run, row by row."""
 
 import math
-from collections import Counter
+from collections import Counter, defaultdict
 from dataclasses import dataclass
 from pathlib import PurePath
 from typing import Final
@@ -95,7 +95,7 @@ def _area_rows(report: Report) -> list[Row]:
 
 
 def _unreached_rows(report: Report) -> list[Row]:
-    areas: Counter[str] = Counter()
+    areas: defaultdict[str, float] = defaultdict(float)
     for patch in report.unreached:
         areas[patch.reason] += patch.area_m2
     if not areas:
