@@ -1,0 +1,124 @@
+"""Every patch of free floor that is left over has one reason, and none is lost."""
+
+import itertools
+
+import pytest
+import shapely
+from shapely.geometry import Point, box
+
+from satAOI_geo.explain import explain
+from satAOI_geo.pipeline import Result, area_of_interest
+from satAOI_geo.plan import FloorPlan, Kind, Obstacle
+from satAOI_geo.reasons import Patch, Reason
+from satAOI_geo.search import Settings
+from satAOI_geo.start import StartMark
+from satAOI_geo.units import MM2_PER_M2
+from tests import plans
+
+SETTINGS = Settings(step_mm=10.0)
+
+SLACK_MM2 = 1e-6 * MM2_PER_M2
+
+
+def at(result: Result, x_mm: float, y_mm: float) -> Patch:
+    """The patch that holds a point."""
+    (patch,) = [p for p in result.patches if p.region.intersects(Point(x_mm, y_mm))]
+    return patch
+
+
+def blocks(*boxes: tuple[float, float, float, float]) -> tuple[Obstacle, ...]:
+    return tuple(
+        Obstacle(box(*bounds), Kind.WALL, "WALL", f"{number:X}")
+        for number, bounds in enumerate(boxes, start=10)
+    )
+
+
+def niche(width_mm: float, depth_mm: float) -> Result:
+    """A 4 × 4 m room with a niche in its right wall, in the middle of it, robot on the left."""
+    low, high = 2000 - width_mm / 2, 2000 + width_mm / 2
+    right = 4000 + depth_mm
+    walls = blocks((4000, 0, right, low), (4000, high, right, 4000))
+    plan = FloorPlan(box(0, 0, right, 4000), walls)
+    return area_of_interest(plan, settings=SETTINGS, start=StartMark((1500.0, 2000.0)))
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("connectivity", ["disc", "pose"])
+def test_patches_and_area_add_up_to_the_free_floor(seed: int, connectivity: str) -> None:
+    settings = Settings(step_mm=25.0, n_directions=12, connectivity=connectivity)
+    result = area_of_interest(plans.random_plan(seed), settings=settings)
+    left_mm2 = sum(patch.area_mm2 for patch in result.patches)
+    free_mm2 = result.plan.free_region().area
+    assert left_mm2 + result.aoi.area_mm2 == pytest.approx(free_mm2, abs=SLACK_MM2)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_patches_do_not_overlap(seed: int) -> None:
+    settings = Settings(step_mm=25.0, n_directions=12)
+    regions = [
+        p.region for p in area_of_interest(plans.random_plan(seed), settings=settings).patches
+    ]
+    together = shapely.union_all(regions).area
+    assert together == pytest.approx(sum(region.area for region in regions), abs=SLACK_MM2)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_label_lies_in_its_patch(seed: int) -> None:
+    settings = Settings(step_mm=25.0, n_directions=12)
+    for patch in area_of_interest(plans.random_plan(seed), settings=settings).patches:
+        assert patch.region.intersects(Point(patch.label_mm))
+
+
+def test_niche_narrower_than_the_disc_is_left_for_the_disc() -> None:
+    patch = at(niche(690, 1600), 5000, 2000)
+    assert patch.reason is Reason.DISC
+    assert patch.blocker is not None
+    assert patch.blocker.handle in {"A", "B"}
+
+
+def test_end_of_a_deep_niche_that_only_the_disc_fits_is_left_for_the_vehicle() -> None:
+    # the disc gets in as deep as the vehicle, 830 mm wide, can follow with its arm: 700 mm
+    patch = at(niche(760, 2500), 6000, 2000)
+    assert patch.reason is Reason.VEHICLE
+
+
+def test_well_as_wide_as_the_disc_is_left_for_the_arm() -> None:
+    # a closed 800 × 800 mm shaft holds the disc, but not the 1345 mm of disc and arm
+    around = blocks(
+        (1500, 1500, 2500, 1600),
+        (1500, 2400, 2500, 2500),
+        (1500, 1600, 1600, 2400),
+        (2400, 1600, 2500, 2400),
+    )
+    plan = FloorPlan(box(0, 0, 6000, 4000), around)
+    result = area_of_interest(plan, settings=SETTINGS, start=StartMark((4500.0, 2000.0)))
+    assert at(result, 2000, 2000).reason is Reason.ARM
+
+
+def test_far_room_behind_a_gap_for_the_disc_alone_is_left_for_want_of_a_path() -> None:
+    case = plans.two_rooms(760.0)
+    result = area_of_interest(case.plan, settings=SETTINGS, start=StartMark(case.start_mm))
+    assert case.beyond_mm is not None
+    assert at(result, *case.beyond_mm).reason is Reason.PATH
+
+
+def test_far_room_behind_a_gap_too_narrow_for_the_disc_is_another_zone() -> None:
+    case = plans.two_rooms(690.0)
+    result = area_of_interest(case.plan, settings=SETTINGS, start=StartMark(case.start_mm))
+    far_mm = (case.plan.floor.bounds[2] - 1000.0, 2000.0)
+    assert at(result, *far_mm).reason is Reason.ZONE
+
+
+def test_a_point_is_explained_by_what_holds_it() -> None:
+    result = niche(690, 600)
+    sentences = {
+        "trowelled": explain(result, (1500.0, 2000.0)),
+        "left over": explain(result, (4500.0, 2000.0)),
+        "in a wall": explain(result, (4300.0, 500.0)),
+        "outside": explain(result, (-1.0, 0.0)),
+    }
+    assert sentences["trowelled"].startswith("The disc trowels this point")
+    assert "too narrow for the troweling disc" in sentences["left over"]
+    assert sentences["in a wall"] == "This point lies in wall A on layer 'WALL'."
+    assert sentences["outside"] == "This point is not on the floor."
+    assert all(a != b for a, b in itertools.combinations(sentences.values(), 2))
