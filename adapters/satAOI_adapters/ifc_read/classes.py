@@ -1,0 +1,127 @@
+"""Which IFC classes are in the robot's way, and what kind of obstacle each is."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from ifcopenshell import entity_instance, ifcopenshell_wrapper
+
+from satAOI_geo.errors import InputError
+from satAOI_geo.plan import Kind
+
+KINDS: Final = (
+    ("IfcBuildingElementPart", Kind.UNCLASSIFIED),
+    ("IfcWall", Kind.WALL),
+    ("IfcCurtainWall", Kind.WALL),
+    ("IfcWindow", Kind.WALL),
+    ("IfcDoor", Kind.WALL),
+    ("IfcPlate", Kind.WALL),
+    ("IfcRailing", Kind.WALL),
+    ("IfcCovering", Kind.WALL),
+    ("IfcColumn", Kind.COLUMN),
+    ("IfcMember", Kind.COLUMN),
+    ("IfcPile", Kind.COLUMN),
+    ("IfcFooting", Kind.COLUMN),
+    ("IfcBeam", Kind.COLUMN),
+    ("IfcChimney", Kind.COLUMN),
+    ("IfcElementComponent", Kind.EMBEDDED),
+    ("IfcMechanicalFastener", Kind.EMBEDDED),
+    ("IfcSlab", Kind.EQUIPMENT),
+    ("IfcStair", Kind.EQUIPMENT),
+    ("IfcStairFlight", Kind.EQUIPMENT),
+    ("IfcRamp", Kind.EQUIPMENT),
+    ("IfcRampFlight", Kind.EQUIPMENT),
+    ("IfcDistributionElement", Kind.EQUIPMENT),
+    ("IfcTransportElement", Kind.EQUIPMENT),
+    ("IfcTransportationDevice", Kind.EQUIPMENT),
+    ("IfcFurnishingElement", Kind.EQUIPMENT),
+)
+"""Kind of a class and of the classes under it; the first that fits."""
+
+PARTS: Final = ("IfcBuildingElementPart", "IfcPlate", "IfcMember")
+"""Classes whose kind is that of the whole they are a part of."""
+
+NEVER_BLOCK: Final = (
+    "IfcFeatureElementSubtraction",
+    "IfcSurfaceFeature",
+    "IfcVirtualElement",
+    "IfcDoor",
+    "IfcFurnishingElement",
+    "IfcGeographicElement",
+    "IfcCivilElement",
+)
+"""Elements that do not block unless they are asked for."""
+
+FLOOR_COVERINGS: Final = frozenset({"FLOORING", "MEMBRANE", "INSULATION"})
+"""Predefined types of IfcCovering that are the floor, not a thing on it."""
+
+MAX_DEPTH: Final = 50
+"""Parts within parts; deeper is a cycle."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """Classes that the user adds to those that block, and takes from them."""
+
+    added: tuple[str, ...]
+    dropped: tuple[str, ...]
+
+
+def chosen_classes(schema: str, added: tuple[str, ...], dropped: tuple[str, ...]) -> Choice:
+    """The user's classes, spelled as the schema spells them.
+
+    Raises:
+        InputError: If the schema has no such class.
+    """
+    return Choice(
+        tuple(_declared(schema, name) for name in added),
+        tuple(_declared(schema, name) for name in dropped),
+    )
+
+
+def _declared(schema: str, name: str) -> str:
+    try:
+        return str(ifcopenshell_wrapper.schema_by_name(schema).declaration_by_name(name).name())
+    except RuntimeError:
+        raise InputError(
+            f"'{name}' is no class of {schema}; give a name such as IfcDoor or IfcColumn"
+        ) from None
+
+
+def blocks(element: entity_instance, choice: Choice) -> bool:
+    """Whether an element stands in the way where it occupies the band."""
+    if any(element.is_a(name) for name in choice.dropped):
+        return False
+    if any(element.is_a(name) for name in choice.added):
+        return True
+    if element.is_a("IfcCovering"):
+        return element.PredefinedType not in FLOOR_COVERINGS
+    return not any(element.is_a(name) for name in NEVER_BLOCK)
+
+
+def kind_of(element: entity_instance) -> Kind:
+    """The kind of obstacle; a part is what the whole is, where that says anything."""
+    kind = _own_kind(element)
+    if any(element.is_a(name) for name in PARTS):
+        wholes = (_own_kind(whole) for whole in wholes_of(element))
+        kind = next((whole for whole in wholes if whole is not Kind.UNCLASSIFIED), kind)
+    return kind
+
+
+def _own_kind(element: entity_instance) -> Kind:
+    return next((kind for name, kind in KINDS if element.is_a(name)), Kind.UNCLASSIFIED)
+
+
+def wholes_of(element: entity_instance) -> Iterator[entity_instance]:
+    """The elements that an element is a part of, the nearest first."""
+    for _ in range(MAX_DEPTH):
+        wholes = [relation.RelatingObject for relation in element.Decomposes]
+        if not wholes or not wholes[0].is_a("IfcElement"):
+            return
+        element = wholes[0]
+        yield element
+
+
+def is_or_is_part_of(element: entity_instance, name: str) -> bool:
+    """Whether an element is of a class or a part, at any depth, of one that is."""
+    return bool(element.is_a(name)) or any(whole.is_a(name) for whole in wholes_of(element))

@@ -1,0 +1,204 @@
+"""What passes between the reader and the process that does the geometry: lines of JSON.
+
+JSON rather than pickles, so that whatever a hostile model does to that process, its words stay
+words.
+"""
+
+from typing import Annotated, Literal, TypeAlias
+
+import shapely
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from satAOI_adapters.ifc_read.options import IfcOptions
+from satAOI_geo.plan import Circle, Finding, Kind, Obstacle, Region, Shape, as_region
+
+ShapeCode: TypeAlias = str | tuple[float, float, float]
+"""A polygon or chain as hexadecimal WKB, a circle as x, y, radius: no digit is lost in either."""
+
+
+class Record(BaseModel):
+    """A message: frozen, and no key that the schema does not know."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Request(Record):
+    """What to read.
+
+    Attributes:
+        path: The model.
+        options: What the user chose.
+        file_mb: Size of the file.
+        memory_mb: Most address space that the process may take.
+        bad_ids: Entities that hold numbers which are none.
+        skip: GlobalIds of elements that ended an earlier run.
+        only_inspect: Whether storeys are enough.
+    """
+
+    path: str
+    options: IfcOptions
+    file_mb: float
+    memory_mb: int
+    bad_ids: frozenset[int] = frozenset()
+    skip: frozenset[str] = frozenset()
+    only_inspect: bool = False
+
+
+class Begun(Record):
+    """An element is about to be read; if nothing follows, it ended the process."""
+
+    type: Literal["begun"] = "begun"
+    handle: str
+    layer: str
+    share: float
+
+
+class Failed(Record):
+    """The model cannot be used: an exception of `satAOI_geo.errors` by name."""
+
+    type: Literal["failed"] = "failed"
+    error: str
+    message: str
+    layer: str = ""
+    handle: str = ""
+
+
+class FindingRecord(Record):
+    """A finding."""
+
+    code: str
+    message: str
+    remedy: str
+    layer: str
+    handle: str
+    at_mm: tuple[float, float] | None
+
+    @classmethod
+    def of(cls, finding: Finding) -> "FindingRecord":
+        """The record of a finding."""
+        return cls(
+            code=finding.code,
+            message=finding.message,
+            remedy=finding.remedy,
+            layer=finding.layer,
+            handle=finding.handle,
+            at_mm=finding.at_mm,
+        )
+
+    def finding(self) -> Finding:
+        """The finding that was recorded."""
+        return Finding(self.code, self.message, self.remedy, self.layer, self.handle, self.at_mm)
+
+
+class ObstacleRecord(Record):
+    """An obstacle."""
+
+    shape: ShapeCode
+    kind: Kind
+    layer: str
+    handle: str
+
+    @classmethod
+    def of(cls, obstacle: Obstacle) -> "ObstacleRecord":
+        """The record of an obstacle."""
+        return cls(
+            shape=encoded(obstacle.shape),
+            kind=obstacle.kind,
+            layer=obstacle.layer,
+            handle=obstacle.handle,
+        )
+
+    def obstacle(self) -> Obstacle:
+        """The obstacle that was recorded."""
+        return Obstacle(decoded(self.shape), self.kind, self.layer, self.handle)
+
+
+class StoreyRecord(Record):
+    """A storey; see `model.Storey`."""
+
+    number: int
+    name: str
+    handle: str
+    elevation_mm: float
+    attribute_mm: float | None
+    counts: dict[str, int]
+
+
+class ModelRecord(Record):
+    """The model as a whole.
+
+    Attributes:
+        schema_name: For example IFC4.
+        unit: Key of `units.MM_PER_UNIT`.
+        mm_per_unit: Millimetres in that unit.
+        storeys: Lowest first.
+        classes: Number of products of each class.
+        findings: What was odd about it.
+    """
+
+    schema_name: str
+    unit: str
+    mm_per_unit: float
+    storeys: list[StoreyRecord]
+    classes: dict[str, int]
+    findings: list[FindingRecord]
+
+
+class Inspected(Record):
+    """The answer to a request to inspect."""
+
+    type: Literal["inspected"] = "inspected"
+    model: ModelRecord
+
+
+class Read(Record):
+    """The answer to a request to read.
+
+    Attributes:
+        model: The model as a whole.
+        origin_mm: What was subtracted from all coordinates.
+        floor: Hexadecimal WKB.
+        floor_source: As in `FloorPlan`.
+        height_mm: Of the floor, in the model.
+        obstacles: What stands on it.
+        findings: What was guessed, repaired or left out, the model's findings first.
+    """
+
+    type: Literal["read"] = "read"
+    model: ModelRecord
+    origin_mm: tuple[float, float]
+    floor: str
+    floor_source: str
+    height_mm: float
+    obstacles: list[ObstacleRecord]
+    findings: list[FindingRecord]
+
+    def region(self) -> Region:
+        """The floor."""
+        return as_region(shapely.from_wkb(self.floor))
+
+
+Answer: TypeAlias = Annotated[Begun | Failed | Inspected | Read, Field(discriminator="type")]
+
+ANSWER: TypeAdapter[Answer] = TypeAdapter(Answer)
+"""Parses one line of the geometry process."""
+
+
+def encoded(shape: Shape) -> ShapeCode:
+    """A shape as text or numbers."""
+    if isinstance(shape, Circle):
+        return shape.x_mm, shape.y_mm, shape.radius_mm
+    return str(shapely.to_wkb(shape, hex=True))
+
+
+def decoded(code: ShapeCode) -> Shape:
+    """The shape that was encoded."""
+    if isinstance(code, str):
+        shape: Shape = shapely.from_wkb(code)
+        return shape
+    return Circle(*code)
+
+
+def encoded_region(region: Region) -> str:
+    """A floor as text."""
+    return str(shapely.to_wkb(region, hex=True))
