@@ -3,7 +3,14 @@
 from pathlib import Path
 
 from satAOI_adapters.files import written_whole
-from satAOI_geo.report import Report
+from satAOI_geo.reasons import SENTENCES, Reason
+from satAOI_geo.report import PatchFigures, Report
+
+Line = tuple[str, str]
+"""A label and what is said under it."""
+
+TOLD_M2 = 0.005
+"""Areas below this print as 0.00 m² and are not worth a line."""
 
 
 def write(path: Path, report: Report) -> None:
@@ -24,13 +31,14 @@ def json_of(report: Report) -> str:
     return report.model_dump_json(by_alias=True, indent=2) + "\n"
 
 
-def lines_of(report: Report) -> list[tuple[str, str]]:
-    """The figures a person asks for first, as (label, value), in reading order."""
+def lines_of(report: Report) -> list[Line]:
+    """The figures a person asks for first, in reading order."""
     floor, aoi, start = report.floor, report.aoi, report.start
     x_mm, y_mm = start.xy_mm
     obstacles = f"{floor.obstacle_percent:.1f} % of the floor, {floor.n_obstacles} pieces"
     parts = "1 part" if aoi.n_parts == 1 else f"{aoi.n_parts} parts"
     share = f"{aoi.percent_of_free:.1f} % of the free floor, {parts}"
+    zones = ", ".join(f"{zone.area_m2:.2f}" for zone in report.zones)
     return [
         ("floor", f"{floor.area_m2:.2f} m² ({floor.source})"),
         ("obstacles", f"{floor.obstacle_area_m2:.2f} m² ({obstacles})"),
@@ -38,4 +46,23 @@ def lines_of(report: Report) -> list[tuple[str, str]]:
         ("start", f"({x_mm:.0f}, {y_mm:.0f}) mm ({start.source})"),
         ("area of interest", f"{aoi.area_m2:.2f} m² ({share}, {aoi.connectivity}-connected)"),
         ("upper estimate", f"{report.disc_connected.area_m2:.2f} m² (disc-connected)"),
+        ("zones", f"{zones} m² (what the robot trowels from one place each)"),
+        *left_over(report.unreached),
+    ]
+
+
+def left_over(patches: list[PatchFigures]) -> list[Line]:
+    """The free floor that is not reached, by reason."""
+    total_m2 = sum(patch.area_m2 for patch in patches)
+    by_reason = {
+        reason: sum(patch.area_m2 for patch in patches if patch.reason == reason)
+        for reason in Reason
+    }
+    return [
+        ("left over", f"{total_m2:.2f} m²"),
+        *(
+            (f"  {reason}", f"{area_m2:.2f} m²: {SENTENCES[reason]}")
+            for reason, area_m2 in by_reason.items()
+            if area_m2 >= TOLD_M2
+        ),
     ]
