@@ -16,6 +16,9 @@ from ezdxf.document import Drawing
 from ezdxf.entities import Circle, DXFEntity, DXFGraphic, Insert, LWPolyline
 from shapely.geometry import Point, Polygon
 
+from satAOI_adapters import read_plan
+from satAOI_adapters.dxf_read import ReadOptions
+
 SAMPLES = Path(__file__).parents[1] / "samples"
 NAMES = ("flat", "hall_complex", "hall_medium", "hall_simple", "two_rooms_760", "two_rooms_900")
 HALLS = {"hall_simple": 7.00, "hall_medium": 14.96, "hall_complex": 25.84}
@@ -108,6 +111,15 @@ def test_obstacles_of_a_hall_have_the_paper_s_area(hall: str) -> None:
     area_m2 = sum(t.area_mm2 for t in on_the_floor(hall)) / 1e6
     # the sump's sides are whole millimetres, so a few mm² are left over
     assert area_m2 == pytest.approx(HALLS[hall], abs=1e-5)
+
+
+@pytest.mark.parametrize("hall", HALLS)
+def test_reader_finds_the_paper_s_area_and_has_nothing_to_say(hall: str) -> None:
+    plan = read_plan(SAMPLES / f"{hall}.dxf", ReadOptions())
+    area_m2 = plan.obstacle_region().area / 1e6
+    # the ends of slotted holes are flattened outwards by at most 0.01 mm
+    assert area_m2 == pytest.approx(HALLS[hall], abs=1e-4)
+    assert plan.findings == ()
 
 
 @pytest.mark.parametrize("hall", HALLS)
