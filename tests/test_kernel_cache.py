@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import satAOI_geo
 from satAOI_adapters.kernel_cache import VARIABLE, prepare
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the folders of Linux")
@@ -23,6 +24,20 @@ def test_kernels_are_kept_in_the_users_cache(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     assert not prepare()
     assert Path(os.environ[VARIABLE]).is_relative_to(tmp_path / "satAOI-geo")
+
+
+def test_kernels_of_changed_sources_make_room_for_new_ones(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    caches = tmp_path / "satAOI-geo"
+    outdated = caches / f"kernels-{satAOI_geo.__version__}-0123456789ab"
+    of_another_version = caches / "kernels-0.0.0-0123456789ab"
+    outdated.mkdir(parents=True)
+    of_another_version.mkdir()
+    prepare()
+    assert not outdated.exists()
+    assert of_another_version.exists()
 
 
 def test_kernels_compiled_for_this_python_are_found_again(

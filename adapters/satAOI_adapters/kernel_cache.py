@@ -1,13 +1,14 @@
-"""Where compiled kernels are kept between runs: one folder a user and version."""
+"""Where compiled kernels are kept between runs: one folder a user and state of the program."""
 
 import atexit
+import hashlib
 import os
 import shutil
 import sys
 import tempfile
 from pathlib import Path
 
-from satAOI_geo import __version__
+import satAOI_geo
 
 VARIABLE = "NUMBA_CACHE_DIR"
 """Read by numba when it is imported; a value that the user set is left alone."""
@@ -28,13 +29,16 @@ def prepare() -> bool:
 
 
 def _own_folder() -> Path:
-    """The user's folder for kernels of this version; where there can be none, one for this run.
+    """The user's folder for these kernels; where there can be none, one for this run.
 
     A shared name in the folder for temporary files would let others slip their code in.
     """
     try:
-        folder = _user_caches() / "satAOI-geo" / f"kernels-{__version__}"
-        folder.mkdir(parents=True, exist_ok=True)
+        caches = _user_caches() / "satAOI-geo"
+        folder = caches / f"kernels-{satAOI_geo.__version__}-{_state_of_sources()}"
+        if not folder.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            _drop_others_of_this_version(folder)
         if os.access(folder, os.W_OK):
             return folder
     except (OSError, RuntimeError):
@@ -43,6 +47,20 @@ def _own_folder() -> Path:
     folder = Path(tempfile.mkdtemp(prefix="satAOI-geo-"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
+
+
+def _state_of_sources() -> str:
+    """A name for the sources as they are; numba cannot read kernels whose types have changed."""
+    sources = sorted(Path(satAOI_geo.__file__).parent.glob("*.py"))
+    stamps = [(file.name, file.stat().st_size, file.stat().st_mtime_ns) for file in sources]
+    return hashlib.sha256(repr(stamps).encode()).hexdigest()[:12]
+
+
+def _drop_others_of_this_version(folder: Path) -> None:
+    """Remove kernels of the same version compiled from sources that have changed since."""
+    for other in folder.parent.glob(f"kernels-{satAOI_geo.__version__}-*"):
+        if other != folder:
+            shutil.rmtree(other, ignore_errors=True)
 
 
 def _user_caches() -> Path:

@@ -1,0 +1,51 @@
+"""The report as JSON and as lines."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from satAOI_adapters import report_write
+from satAOI_geo import InputError, Report
+from tests.results import furnished_result
+
+REPORT = furnished_result().report
+
+
+def test_the_json_read_again_is_the_same_report() -> None:
+    assert Report.model_validate_json(report_write.json_of(REPORT)) == REPORT
+
+
+def test_the_json_names_its_schema_first() -> None:
+    keys = list(json.loads(report_write.json_of(REPORT)))
+    assert keys[0] == "schema"
+    assert json.loads(report_write.json_of(REPORT))["schema"] == "sataoi-report/1"
+
+
+def test_the_file_holds_the_json(tmp_path: Path) -> None:
+    file = tmp_path / "report.json"
+    report_write.write(file, REPORT)
+    assert file.read_text(encoding="utf-8") == report_write.json_of(REPORT)
+
+
+def test_a_report_is_never_written_over_the_plan(tmp_path: Path) -> None:
+    plan = tmp_path / "plan.dxf"
+    plan.write_bytes(b"the plan")
+    source = REPORT.input.model_copy(update={"path": str(plan)})
+    with pytest.raises(InputError, match="is an input"):
+        report_write.write(plan, REPORT.model_copy(update={"input": source}))
+    assert plan.read_bytes() == b"the plan"
+
+
+def test_every_line_has_a_label_and_its_figure() -> None:
+    lines = dict(report_write.lines_of(REPORT))
+    assert lines["floor"] == "35.00 m² (given)"
+    assert lines["area of interest"].startswith(f"{REPORT.aoi.area_m2:.2f} m²")
+    assert lines["upper estimate"].startswith(f"{REPORT.disc_connected.area_m2:.2f} m²")
+
+
+def test_the_reasons_add_up_to_what_is_left_over() -> None:
+    (_, total), *reasons = report_write.left_over(REPORT.unreached)
+    figures = [float(value.split()[0]) for _, value in reasons]
+    # each figure is rounded to 0.01 m², and one below half of that has no line
+    assert float(total.split()[0]) == pytest.approx(sum(figures), abs=0.005 * 6)
