@@ -50,10 +50,13 @@ def _own_folder() -> Path:
 
 
 def _state_of_sources() -> str:
-    """A name for the sources as they are; numba cannot read kernels whose types have changed."""
+    """A name for the sources of kernels; numba cannot read kernels whose types have changed."""
     sources = sorted(Path(satAOI_geo.__file__).parent.glob("*.py"))
-    stamps = [(file.name, file.stat().st_size, file.stat().st_mtime_ns) for file in sources]
-    return hashlib.sha256(repr(stamps).encode()).hexdigest()[:12]
+    digest = hashlib.sha256()
+    for text in (file.read_bytes() for file in sources):
+        if b"import numba" in text or b"from numba" in text:
+            digest.update(text)
+    return digest.hexdigest()[:12]
 
 
 def _drop_others_of_this_version(folder: Path) -> None:
