@@ -112,11 +112,15 @@ HARD: Final[dict[str, FloorPlan]] = {
     ),
     "corners_in_the_middle_of_sides": plan_of(
         ROOM,
-        Polygon([(1500, 1500), (2000, 1500), (2500, 1500), (2500, 2000), (2000, 2000), (1500, 2000)]),
+        Polygon(
+            [(1500, 1500), (2000, 1500), (2500, 1500), (2500, 2000), (2000, 2000), (1500, 2000)]
+        ),
     ),
     "spiral": plan_of(
         box(0, 0, 5000, 5000),
-        LineString([(2500, 2600), (2400, 2600), (2400, 2400), (3800, 2400), (3800, 4000), (900, 4000)]),
+        LineString(
+            [(2500, 2600), (2400, 2600), (2400, 2400), (3800, 2400), (3800, 4000), (900, 4000)]
+        ),
     ),
     "floor_with_holes": plan_of(
         Polygon(
@@ -141,7 +145,9 @@ HARD: Final[dict[str, FloorPlan]] = {
         Polygon([(0, 300), (2100, -200), (4300, 1100), (3900, 3600), (1200, 4100), (-300, 2200)]),
         Polygon([(1900, 1800), (2300, 1850), (2250, 2200), (1950, 2100)]),
     ),
-    "round_floor": plan_of(Point(2000, 2000).buffer(2000, quad_segs=24), Circle(2000.0, 2000.0, 60.0)),
+    "round_floor": plan_of(
+        Point(2000, 2000).buffer(2000, quad_segs=24), Circle(2000.0, 2000.0, 60.0)
+    ),
     "far_from_the_origin": plan_of(
         translate(ROOM, *CAMPUS_MM),
         translate(box(1000.3, 1000.7, 1400.1, 1300.9), *CAMPUS_MM),

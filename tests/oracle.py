@@ -9,6 +9,7 @@ import math
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import compress
 from typing import Final, TypeAlias
 
 import numpy as np
@@ -53,9 +54,7 @@ class Oracle:
         self.keep_mm = clearance_mm + TOUCH_MM
         self.turn_rad = 2 * math.pi / lattice.n_directions
         self.obstacles = [solid_of(o.shape) for o in plan.obstacles]
-        self.nodes = [
-            (iy, ix) for iy in range(lattice.n_rows) for ix in range(lattice.n_columns)
-        ]
+        self.nodes = [(iy, ix) for iy in range(lattice.n_rows) for ix in range(lattice.n_columns)]
         self.swings = self._swings()
         self.is_ring = len(self.swings) == lattice.n_directions
 
@@ -68,7 +67,10 @@ class Oracle:
 
     def capsule(self, a1: int) -> Points:
         """Ends of the spine, seen from the disc centre."""
-        return [(0.0, 0.0), polar(self.robot.arm_length_mm - self.robot.disc_radius_mm, self._rad(a1))]
+        return [
+            (0.0, 0.0),
+            polar(self.robot.arm_length_mm - self.robot.disc_radius_mm, self._rad(a1)),
+        ]
 
     def vehicle(self, a1: int, a2: int) -> Points:
         """Corners of the vehicle, seen from the disc centre."""
@@ -98,7 +100,7 @@ class Oracle:
         for a1 in range(self.lattice.n_directions):
             for a2 in self.swings:
                 free = self.free((a1, a2), self.nodes)
-                found |= {(*node, a1, a2) for node, is_free in zip(self.nodes, free) if is_free}
+                found |= {(*node, a1, a2) for node in compress(self.nodes, free)}
         return found
 
     def partition(self) -> dict[State, int]:
@@ -138,15 +140,16 @@ class Oracle:
                 if (iy, ix, *turns) in states and (iy + rows, ix + columns, *end) in states
             ]
             clear = self._clear_of_all(swept_capsule, swept_vehicle, nodes)
-            for iy, ix in (node for node, is_clear in zip(nodes, clear) if is_clear):
+            for iy, ix in compress(nodes, clear):
                 yield (iy, ix, *turns), (iy + rows, ix + columns, *end)
 
-    def _beside(self, a2: int, step: int) -> int | None:
-        """The next turn of the vehicle, round the ring if there is one, else None at its end."""
-        at = self.swings.index(a2) + step
-        if self.is_ring:
-            return self.swings[at % len(self.swings)]
-        return self.swings[at] if 0 <= at < len(self.swings) else None
+    def _beside(self, a2: int, step: int) -> int:
+        """The next turn of the vehicle, round the ring if there is one.
+
+        Beyond the end of a range it is a turn that no state has.
+        """
+        least = self.swings[0]
+        return least + (a2 + step - least) % len(self.swings) if self.is_ring else a2 + step
 
     def _clear_of_all(self, capsule: Points, vehicle: Points, nodes: list[Node]) -> list[bool]:
         """Whether the hulls of both parts, seen from each node, touch nothing."""
@@ -166,11 +169,14 @@ class Oracle:
         """Copies of a core, one at each node."""
         left_mm, bottom_mm = self.lattice.origin_mm
         step_mm = self.lattice.step_mm
-        at_mm = [(left_mm + (ix + 0.5) * step_mm, bottom_mm + (iy + 0.5) * step_mm) for iy, ix in nodes]
+        at_mm = [
+            (left_mm + (ix + 0.5) * step_mm, bottom_mm + (iy + 0.5) * step_mm) for iy, ix in nodes
+        ]
         copies = np.array([core] * len(nodes), dtype=object)
         corners_mm = shapely.get_coordinates(copies).reshape(len(nodes), -1, 2)
         placed_mm = corners_mm + np.array(at_mm)[:, np.newaxis]
-        return shapely.set_coordinates(copies, placed_mm.reshape(-1, 2))
+        shapely.set_coordinates(copies, placed_mm.reshape(-1, 2))
+        return copies
 
     def _rad(self, direction: int) -> float:
         return direction * self.turn_rad

@@ -8,7 +8,6 @@ import pytest
 import shapely
 from shapely.geometry import LineString, Point, Polygon, box
 
-from satAOI_geo import collision
 from satAOI_geo.collision import Collider, Reference
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import CONTACT_MM, Circle, FloorPlan, Kind, Obstacle, Shape
@@ -45,7 +44,7 @@ def wall_behind(distance_mm: float, a1_deg: int) -> LineString:
     [(-1.0, True), (0.0, True), (CONTACT_MM - JUST_MM, True), (CONTACT_MM + JUST_MM, False)],
 )
 def test_disc_touches_a_wall_up_to_the_contact_band(
-    a1_deg: int, beyond_mm: float, contact: bool
+    a1_deg: int, beyond_mm: float, *, contact: bool
 ) -> None:
     pose = Pose(0.0, 0.0, math.radians(a1_deg), 0.0)
     assert touches(pose, wall_behind(350 + beyond_mm, a1_deg)) is contact
@@ -53,14 +52,15 @@ def test_disc_touches_a_wall_up_to_the_contact_band(
 
 @pytest.mark.parametrize("clearance_mm", [0.0, 35.0, 0.125])
 def test_clearance_moves_the_contact_of_disc_and_vehicle_alike(clearance_mm: float) -> None:
-    for reach_mm, wall in (
-        (350, lambda x: LineString([(-x, -500), (-x, 500)])),
-        (415, lambda y: LineString([(1000, y), (1200, y)])),
-        (1574.5, lambda x: box(x, -100, x + 10, 100)),
-    ):
-        limit_mm = reach_mm + clearance_mm + CONTACT_MM
-        assert touches(EAST, wall(limit_mm - JUST_MM), clearance_mm=clearance_mm)
-        assert not touches(EAST, wall(limit_mm + JUST_MM), clearance_mm=clearance_mm)
+    for beyond_mm, contact in ((-JUST_MM, True), (JUST_MM, False)):
+        away_mm = clearance_mm + CONTACT_MM + beyond_mm
+        behind_mm, beside_mm, ahead_mm = 350 + away_mm, 415 + away_mm, 1574.5 + away_mm
+        for wall in (
+            LineString([(-behind_mm, -500), (-behind_mm, 500)]),
+            LineString([(1000, beside_mm), (1200, beside_mm)]),
+            box(ahead_mm, -100, ahead_mm + 10, 100),
+        ):
+            assert touches(EAST, wall, clearance_mm=clearance_mm) is contact
 
 
 @pytest.mark.parametrize("bearing_deg", [90, 91, 117.3, 135, 180, 200.01, 269])
@@ -165,7 +165,7 @@ def test_geos_that_misses_a_line_on_a_line_is_refused(monkeypatch: pytest.Monkey
         def query(self, *_: object, **__: object) -> np.ndarray:
             return np.array([])
 
-    monkeypatch.setattr(collision.shapely, "STRtree", Blind)
+    monkeypatch.setattr("satAOI_geo.collision.shapely.STRtree", Blind)
     with pytest.raises(ImportError, match="1887"):
         Collider(plan_of(WIDE_FLOOR), PROTOTYPE)
 

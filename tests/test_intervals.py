@@ -24,7 +24,9 @@ WINDOW = Lattice((-1000.0, -800.0), 10.0, 160, 200, 4, (0,))
 POINT = Part(np.zeros((1, 2)), 0.0)
 
 
-def blocked(part: Part, *shapes: Shape, lattice: Lattice = WINDOW, clearance_mm: float = 0.0) -> BoolArray:
+def blocked(
+    part: Part, *shapes: Shape, lattice: Lattice = WINDOW, clearance_mm: float = 0.0
+) -> BoolArray:
     plan = plan_of(WIDE_FLOOR, *shapes)
     return lattice.unpacked(Intervals(plan, PROTOTYPE, lattice, clearance_mm).blocked(part))
 
@@ -62,9 +64,7 @@ def test_disc_touches_a_box_within_its_radius(
 ) -> None:
     across_mm, up_mm = nodes_mm()
     right_mm, top_mm = left_mm + width_mm, bottom_mm + height_mm
-    gaps_mm = np.hypot(
-        beyond_mm(across_mm, left_mm, right_mm), beyond_mm(up_mm, bottom_mm, top_mm)
-    )
+    gaps_mm = np.hypot(beyond_mm(across_mm, left_mm, right_mm), beyond_mm(up_mm, bottom_mm, top_mm))
     found = blocked(replace(POINT, radius_mm=disc_mm), box(left_mm, bottom_mm, right_mm, top_mm))
     assert np.array_equal(found, gaps_mm <= disc_mm + CONTACT_MM)
 
@@ -105,7 +105,7 @@ def test_straight_robot_touches_a_circle_where_its_parts_are_near(
 def test_distance_of_exactly_the_radius_is_contact(reach_mm: float, columns: list[float]) -> None:
     wall = LineString([(0, -2000), (0, 2000)])
     found = blocked(replace(POINT, radius_mm=reach_mm), wall)
-    assert [WINDOW.x_mm(ix) for ix in np.flatnonzero(found.all(axis=0))] == columns
+    assert [WINDOW.x_mm(ix) for ix in np.flatnonzero(found.all(axis=0)).tolist()] == columns
     assert found.any(axis=0).sum() == len(columns)
 
 
@@ -175,7 +175,9 @@ def test_all_off_the_floor_is_blocked() -> None:
     found = lattice.unpacked(Intervals(plan, PROTOTYPE, lattice).blocked(POINT))
     across_mm, up_mm = nodes_mm()
     # the notch runs from (0, 100) to (±900, 700), down to 2/3 of |x| above 100
-    expected = (np.abs(across_mm) >= 900) | (up_mm <= -700) | (up_mm >= 100 + np.abs(across_mm) / 1.5)
+    expected = (
+        (np.abs(across_mm) >= 900) | (up_mm <= -700) | (up_mm >= 100 + np.abs(across_mm) / 1.5)
+    )
     assert np.array_equal(found, expected)
 
 

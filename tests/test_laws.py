@@ -1,9 +1,10 @@
-"""Laws that hold whatever the plan: symmetry bit for bit, and that less room is never more reach."""
+"""Laws that hold whatever the plan: symmetry bit for bit, and less room is never more reach."""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -98,7 +99,7 @@ def found(
 
 
 def canonical(labels: Labels) -> npt.NDArray[np.int64]:
-    """The same sets numbered by the first of their states, so that equal sets have equal numbers."""
+    """The same sets numbered by the first of their states: equal sets have equal numbers."""
     flat = labels.ravel()
     first = np.full(flat.max(initial=-1) + 2, -1)
     # of several states of one set the last one written stays; number -1 is no set
@@ -107,12 +108,12 @@ def canonical(labels: Labels) -> npt.NDArray[np.int64]:
     return first[labels]
 
 
-def turned_states(states: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
+def turned_states(states: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """(a1, swing, iy, ix) becomes (a1 + 90°, swing, ix, n_rows - 1 - iy)."""
     return np.roll(states, FINE // 4, axis=0).swapaxes(-1, -2)[..., ::-1]
 
 
-def mirrored_states(states: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
+def mirrored_states(states: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """(a1, swing, iy, ix) becomes (180° - a1, -swing, iy, n_columns - 1 - ix)."""
     half_turn_less = (FINE // 2 - np.arange(FINE)) % FINE
     return states[half_turn_less][:, ::-1, :, ::-1]
@@ -121,7 +122,7 @@ def mirrored_states(states: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
 def assert_same_after(
     before: Found,
     after: Found,
-    mapped: Callable[[npt.NDArray[np.generic]], npt.NDArray[np.generic]],
+    mapped: Callable[[npt.NDArray[Any]], npt.NDArray[Any]],
 ) -> None:
     """States, disc-connected sets and pose-connected sets are the same after a motion."""
     assert np.array_equal(after.free, mapped(before.free))
@@ -142,7 +143,7 @@ def test_plan_turned_by_a_quarter_turns_all_that_is_found(plan: FloorPlan, robot
 
 @pytest.mark.parametrize("turns", [2, 3, 4])
 def test_plan_turned_by_several_quarters_turns_all_that_is_found(turns: int) -> None:
-    def turned_often(states: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
+    def turned_often(states: npt.NDArray[Any]) -> npt.NDArray[Any]:
         for _ in range(turns):
             states = turned_states(states)
         return states

@@ -1,7 +1,7 @@
 """The robot's parts stand where its drawing says, and measures that contradict are refused."""
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from satAOI_geo.errors import RobotError
-from satAOI_geo.robot import ROBOTS, Part, unit
+from satAOI_geo.robot import ROBOTS, Part, Robot, unit
 
 PROTOTYPE = ROBOTS["magicbim"]
 EAST, NORTH, WEST = np.array((1.0, 0.0)), np.array((0.0, 1.0)), np.array((-1.0, 0.0))
@@ -101,7 +101,7 @@ def test_moved_part_has_its_reference_point_at_the_node() -> None:
 @pytest.mark.parametrize("value_mm", [0.0, -1.0, math.nan, math.inf])
 def test_length_that_is_no_length_is_refused_by_name(measure: str, value_mm: float) -> None:
     with pytest.raises(RobotError, match=measure) as refusal:
-        replace(PROTOTYPE, **{measure: value_mm})
+        Robot(**asdict(PROTOTYPE) | {measure: value_mm})
     assert refusal.value.measure == measure
 
 

@@ -73,9 +73,9 @@ def test_a_state_is_in_the_run_that_covers_it(
     n_first = len(stretches(*drawn[0]))
     for swing, (free, _) in enumerate(drawn):
         for iy, ix in np.ndindex(free.shape):
-            run = runs.at(iy, ix, 0, swing)
-            assert (run is None) == (not free[iy, ix])
-            if run is not None:
+            run = runs.holding(iy, ix, 0, swing)
+            assert (run < 0) == (not free[iy, ix])
+            if run >= 0:
                 row, begin, end = listed(runs)[run]
                 assert row == iy
                 assert begin <= ix <= end
@@ -104,7 +104,7 @@ def test_links_join_the_runs_that_single_moves_join(
     ).tolist()
 
     expected = {
-        (runs.at(iy, ix, 0, 0), runs.at(iy + rows_up, ix, 0, 1))
+        (runs.holding(iy, ix, 0, 0), runs.holding(iy + rows_up, ix, 0, 1))
         for iy, ix in np.argwhere(allowed).tolist()
     }
     assert {(one, other) for one, other, _ in found} == expected

@@ -24,13 +24,14 @@ INSTANTS = np.linspace(0, 1, 61)
 ROUNDING_MM = 1e-9
 """Of coordinates of a few metres, times a few operations."""
 
-directions = st.integers(0, 359).map(lambda k: math.radians(k))
+directions = st.integers(0, 359).map(math.radians)
 turns_rad = st.sampled_from([4, 8, 12, 24, 36]).map(lambda n: 2 * math.pi / n)
 
 
 def rotated(points_mm: FloatArray, about_mm: FloatArray, turn_rad: float) -> FloatArray:
     cos, sin = math.cos(turn_rad), math.sin(turn_rad)
-    return (points_mm - about_mm) @ np.array(((cos, sin), (-sin, cos))) + about_mm
+    turned_mm: FloatArray = (points_mm - about_mm) @ np.array(((cos, sin), (-sin, cos)))
+    return turned_mm + about_mm
 
 
 def core(part: Part) -> BaseGeometry:
