@@ -1,6 +1,7 @@
 """Bodies of products: exact where they are stacks of upright prisms, meshed where not."""
 
 import contextlib
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Final
@@ -158,6 +159,7 @@ class BodyReader:
         self._kernel = ifcopenshell.geom.kernel(settings, model, logger=self._log)
         # trees and fittings repeat: what they map is meshed once
         self._meshed: dict[int, Meshed] = {}
+        self._outlying: dict[int, FloatArray] = {}
 
     def matrix(self, product: entity_instance) -> FloatArray:
         """From a product's coordinates to the plan's axes.
@@ -173,13 +175,26 @@ class BodyReader:
         """A box around a product's body, or None where one is not found without meshing."""
         try:
             matrix = self.matrix(product)
-            boxes = [_corners(item, matrix, self._units) for item in body_items(product)]
+            boxes = [self._corners(item, matrix) for item in body_items(product)]
         except MALFORMED:
             return None
         if not boxes:
             return None
         corners_mm = np.concatenate(boxes)
         return Extent(corners_mm.min(axis=0), corners_mm.max(axis=0))
+
+    def _corners(self, item: entity_instance, matrix: FloatArray) -> FloatArray:
+        """Points, shape (n, 3), whose box holds an item; those of its own are found once.
+
+        Raises:
+            NotExactError: If no such points are known without meshing.
+        """
+        corners = []
+        for inner, placed in _resolved([item], matrix, self._units):
+            if inner.id() not in self._outlying:
+                self._outlying[inner.id()] = _own_corners(inner, self._units)
+            corners.append(self._outlying[inner.id()] @ placed[:3, :3].T + placed[:3, 3])
+        return np.concatenate(corners)
 
     def body(self, product: entity_instance, view: View) -> Body:
         """A product's body, its openings cut out.
@@ -331,34 +346,31 @@ def _is_curved(item: entity_instance) -> bool:
     return False
 
 
-def _corners(item: entity_instance, matrix: FloatArray, units: Units) -> FloatArray:
-    """Points, shape (n, 3), whose box holds an item.
-
-    Raises:
-        NotExactError: If no such points are known without meshing.
-    """
-    if item.is_a("IfcMappedItem"):
-        resolved = _resolved([item], matrix, units)
-        return np.concatenate([_corners(inner, placed, units) for inner, placed in resolved])
+def _own_corners(item: entity_instance, units: Units) -> FloatArray:
+    """Points in an item's coordinates whose hull holds it."""
     if item.is_a("IfcBooleanResult") and item.Operator == "DIFFERENCE":
-        return _corners(item.FirstOperand, matrix, units)
+        return _own_corners(item.FirstOperand, units)
     if item.is_a() == "IfcExtrudedAreaSolid":
-        return _extrusion_corners(item, matrix, units)
+        return _extrusion_corners(item, units)
     if any(item.is_a(name) for name in POINT_DEFINED):
-        return _points_mm(item, units) @ matrix[:3, :3].T + matrix[:3, 3]
+        return _box_corners(_points_mm(item, units))
     raise NotExactError(item.is_a())
 
 
-def _extrusion_corners(item: entity_instance, matrix: FloatArray, units: Units) -> FloatArray:
-    placed = matrix @ axis_placement(item.Position, units.mm)
+def _extrusion_corners(item: entity_instance, units: Units) -> FloatArray:
+    placed = axis_placement(item.Position, units.mm)
     region = as_polygon(profile_of(item.SweptArea, units).shape(outward=True), outward=True)
-    left, bottom, right, top = region.bounds
-    base_mm = np.array(
-        ((left, bottom, 0.0), (right, bottom, 0.0), (right, top, 0.0), (left, top, 0.0))
-    )
+    left_mm, bottom_mm, right_mm, top_mm = region.bounds
+    base_mm = _box_corners(np.array(((left_mm, bottom_mm, 0.0), (right_mm, top_mm, 0.0))))
     ratios = np.asarray(item.ExtrudedDirection.DirectionRatios, dtype=np.float64)
     sweep_mm = ratios / np.linalg.norm(ratios) * item.Depth * units.mm
     return np.concatenate((base_mm, base_mm + sweep_mm)) @ placed[:3, :3].T + placed[:3, 3]
+
+
+def _box_corners(points_mm: FloatArray) -> FloatArray:
+    """The eight corners of the box around points."""
+    ends_mm = np.stack((points_mm.min(axis=0), points_mm.max(axis=0)))
+    return np.array(list(itertools.product(*ends_mm.T)))
 
 
 def _points_mm(item: entity_instance, units: Units) -> FloatArray:

@@ -24,14 +24,14 @@ AnswerT = TypeVar("AnswerT", Inspected, Read)
 
 WORKER: Final = "satAOI_adapters.ifc_read.worker"
 
+OPENING_S: Final = 30.0
+"""Longest silence before the first element, for loading the libraries; and then some."""
+
+OPENING_S_PER_MB: Final = 0.5
+"""Longer silence allowed for each megabyte to be opened, ten times what it takes."""
+
 ELEMENT_S: Final = 15.0
-"""Longest silence of the process: for one element, or for opening the model.
-
-Opening takes a second for each 20 MB; the slowest element seen took two.
-"""
-
-OPENING_S_PER_MB: Final = 0.2
-"""Longer silence allowed for each megabyte of the file."""
+"""Longest silence after an element was begun; the slowest one seen took two."""
 
 MAX_RESTARTS: Final = 5
 """After so many elements that ended the process the model is given up."""
@@ -58,10 +58,9 @@ def answered(
         LimitError: If it takes longer than allowed.
     """
     deadline_s = time.monotonic() + timeout_s
-    silence_s = ELEMENT_S + OPENING_S_PER_MB * request.file_mb
     ended_by: list[str] = []
     for _ in range(MAX_RESTARTS):
-        outcome = _one_run(request, deadline_s, silence_s, progress)
+        outcome = _one_run(request, deadline_s, progress)
         if isinstance(outcome, expected):
             return outcome
         if not isinstance(outcome, _Ended):
@@ -94,9 +93,10 @@ class _Ended:
 
 
 def _one_run(
-    request: Request, deadline_s: float, silence_s: float, progress: Progress | None
+    request: Request, deadline_s: float, progress: Progress | None
 ) -> Inspected | Read | _Ended:
     last: Begun | None = None
+    silence_s = OPENING_S + OPENING_S_PER_MB * request.file_mb
     with tempfile.TemporaryFile() as said, _started(request, said) as (process, lines):
         while True:
             left_s = deadline_s - time.monotonic()
@@ -116,11 +116,11 @@ def _one_run(
                 return _Ended(_how_it_ended(process, said), last)
             answer = ANSWER.validate_json(line)
             if isinstance(answer, Begun):
-                last = answer
+                last, silence_s = answer, ELEMENT_S
                 if progress is not None:
                     progress("reading", answer.share)
             elif isinstance(answer, Failed):
-                raise _as_error(answer)
+                raise as_error(answer)
             else:
                 return answer
 
@@ -140,24 +140,27 @@ def _started(
         env=_environment(),
     )
     lines: queue.Queue[str | None] = queue.Queue()
+    reader = threading.Thread(target=_converse, args=(process, request, lines))
+    reader.start()
     try:
-        reader = threading.Thread(target=_converse, args=(process, request, lines), daemon=True)
-        reader.start()
         yield process, lines
     finally:
         process.kill()
         process.wait()
+        reader.join()
 
 
 def _converse(
     process: "subprocess.Popen[str]", request: Request, lines: "queue.Queue[str | None]"
 ) -> None:
+    """Send the request, then pass on what comes back until the process ends."""
     if process.stdin is not None and process.stdout is not None:
         # the process may end before it has read all of the request
         with contextlib.suppress(BrokenPipeError), process.stdin as stdin:
             stdin.write(request.model_dump_json() + "\n")
-        for line in process.stdout:
-            lines.put(line)
+        with process.stdout as stdout:
+            for line in stdout:
+                lines.put(line)
     lines.put(None)
 
 
@@ -176,7 +179,7 @@ def _how_it_ended(process: "subprocess.Popen[str]", said: IO[bytes]) -> str:
     return words[-1] if words else f"exit code {code}"
 
 
-def _as_error(failed: Failed) -> SatAoiError:
+def as_error(failed: Failed) -> SatAoiError:
     """The exception that the process met."""
     kind = getattr(errors, failed.error)
     if issubclass(kind, DrawingError):

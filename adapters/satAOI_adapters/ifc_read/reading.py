@@ -74,7 +74,7 @@ def read(path: Path, options: IfcOptions, progress: Progress | None = None) -> F
     """
     request, data = _request(path, options, only_inspect=False)
     answer = answered(request, Read, timeout_s=options.timeout_s, progress=progress)
-    return _plan(answer, _source(path, data, answer.model, options))
+    return plan_of(answer, _source(path, data, answer.model, options))
 
 
 def inspect(path: Path, options: IfcOptions) -> Inspection:
@@ -123,7 +123,8 @@ def _source(path: Path, data: bytes, model: ModelRecord, options: IfcOptions) ->
     )
 
 
-def _plan(answer: Read, source: Source) -> FloorPlan:
+def plan_of(answer: Read, source: Source) -> FloorPlan:
+    """The plan in an answer: near the origin, and rounded to `DIGITS`."""
     floor = answer.region()
     left_mm, bottom_mm = (float(np.floor(corner_mm)) for corner_mm in floor.bounds[:2])
     shift_mm = np.array((-left_mm, -bottom_mm))

@@ -166,7 +166,8 @@ def _stand_in(
 
 def _refuse_if_most_failed(site: Site) -> None:
     failed = site.notes.failed
-    n_tried = len(failed) + sum(1 for p in site.products if blocks(p, site.choice))
+    blocking = {p.GlobalId for p in site.products if blocks(p, site.choice)}
+    n_tried = len(blocking | {finding.handle for finding in failed})
     if failed and len(failed) > MOST_FAILED * n_tried:
         first = failed[0]
         raise DrawingError(

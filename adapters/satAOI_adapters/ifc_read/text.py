@@ -28,7 +28,7 @@ OTHER_KINDS: Final = (
 SCHEMA_PATTERN: Final = re.compile(rb"FILE_SCHEMA\s*\(\s*\(\s*'([^']*)'", re.IGNORECASE)
 # strings and comments are matched first so that a "nan" in a name is not mistaken for a number
 NOT_A_NUMBER: Final = re.compile(
-    rb"'(?:[^']|'')*'|/\*.*?\*/|[(,]\s*[-+]?(nan|inf(?:inity)?|\d+\.#\w+)\s*(?=[,)])",
+    rb"'(?:[^']|'')*'|/\*.*?\*/|[(,]\s*[-+]?(nan|inf(?:inity)?)\s*(?=[,)])",
     re.IGNORECASE | re.DOTALL,
 )
 ENTITY_ID: Final = re.compile(rb"#(\d+)\s*=")
