@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 import shapely
+from ifcopenshell import entity_instance
 from shapely.geometry import Polygon, box
 
 from satAOI_adapters.ifc_read import IfcOptions, process, reading, text
