@@ -6,6 +6,7 @@ import subprocess
 import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import ezdxf
@@ -18,6 +19,7 @@ from shapely.geometry import Point, Polygon
 
 from satAOI_adapters import read_plan
 from satAOI_adapters.dxf_read import ReadOptions
+from satAOI_geo.pipeline import Result, area_of_interest
 
 SAMPLES = Path(__file__).parents[1] / "samples"
 NAMES = ("flat", "hall_complex", "hall_medium", "hall_simple", "two_rooms_760", "two_rooms_900")
@@ -183,6 +185,45 @@ def test_flat_has_solid_walls_one_curved_and_columns_as_blocks() -> None:
     assert {arc.dxf.radius for arc in msp.query('ARC[layer=="A-WALL"]')} == {2500.0, 2260.0}
     assert len(msp.query('INSERT[layer=="A-COLS"]')) == 3
     assert "A-FLOR" not in doc.layers
+
+
+@cache
+def result(name: str) -> Result:
+    return area_of_interest(read_plan(SAMPLES / f"{name}.dxf", ReadOptions()))
+
+
+def is_troweled(name: str, at: tuple[float, float]) -> bool:
+    """Whether the area of interest of a sample holds a point, given in drawing units."""
+    there = shapely.points(result(name).plan.frame.to_local_mm(at))
+    return any(outline.polygon().contains(there) for outline in result(name).aoi.outlines)
+
+
+def test_robot_gets_through_an_opening_of_900_mm_and_not_of_760() -> None:
+    assert is_troweled("two_rooms_760", (2000.0, 2000.0))
+    assert not is_troweled("two_rooms_760", (6200.0, 2000.0))
+    assert is_troweled("two_rooms_900", (2.0, 2.0))
+    assert is_troweled("two_rooms_900", (6.2, 2.0))
+
+
+@pytest.mark.parametrize(
+    ("room", "centre", "reached"),
+    [
+        ("bedroom 1", (2300.0, 2300.0), True),
+        ("bedroom 2", (2000.0, 6100.0), True),
+        ("living", (6500.0, 2500.0), True),
+        ("kitchen", (8500.0, 6000.0), True),
+        ("bath", (5200.0, 6000.0), False),
+    ],
+)
+def test_robot_gets_into_every_room_of_the_flat_but_the_bath(
+    room: str, centre: tuple[float, float], *, reached: bool
+) -> None:
+    assert is_troweled("flat", centre) is reached, room
+
+
+def test_robot_trowels_no_wall_column_or_shaft_of_the_flat() -> None:
+    wall, column, shaft = (4460.0, 1500.0), (8200.0, 2600.0), (4370.0, 7460.0)
+    assert not any(is_troweled("flat", at) for at in (wall, column, shaft))
 
 
 @pytest.mark.parametrize("name", NAMES)
