@@ -17,10 +17,9 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
-import shapely
-from shapely.geometry import LineString, Polygon
-from shapely.geometry.polygon import orient
+from shapely.geometry import LineString
 
+from satAOI_geo.convex import convex_pieces
 from satAOI_geo.lattice import Lattice, Words
 from satAOI_geo.plan import (
     CONTACT_MM,
@@ -58,7 +57,7 @@ class Pieces:
         shapes: list[Shape] = [*(o.shape for o in plan.obstacles), *outside]
         corners, radii_mm = [], []
         for shape in shapes:
-            for piece_mm in _convex_pieces(shape):
+            for piece_mm in _pieces(shape):
                 corners.append(_in_lattice_units(piece_mm, lattice))
                 radii_mm.append(shape.radius_mm if isinstance(shape, Circle) else 0.0)
         x, y = np.concatenate(corners).T
@@ -111,21 +110,14 @@ class Intervals:
         return words
 
 
-def _convex_pieces(shape: Shape) -> list[FloatArray]:
+def _pieces(shape: Shape) -> list[FloatArray]:
     """Corners of convex polygons, segments or a point whose union is the shape."""
     if isinstance(shape, Circle):
         return [np.array([(shape.x_mm, shape.y_mm)])]
     if isinstance(shape, LineString):
         chain_mm = np.asarray(shape.coords)[:, :2]
         return [chain_mm[i : i + 2] for i in range(len(chain_mm) - 1)]
-    if not shape.interiors and shape.area == shape.convex_hull.area:
-        return [_corners(shape)]
-    return [_corners(t) for t in polygons_in([shapely.constrained_delaunay_triangles(shape)])]
-
-
-def _corners(polygon: Polygon) -> FloatArray:
-    """Corners of a polygon, counter-clockwise, the first not repeated."""
-    return np.asarray(orient(polygon).exterior.coords)[:-1, :2]
+    return convex_pieces(shape)
 
 
 def _in_lattice_units(points_mm: FloatArray, lattice: Lattice) -> FloatArray:
