@@ -23,7 +23,9 @@ from shapely.geometry import Polygon, box
 
 from satAOI_adapters import write_aoi
 from satAOI_adapters.dxf_write.legend import note_rows
+from satAOI_adapters.dxf_write.pen import begun_on_a_straight
 from satAOI_adapters.dxf_write.place import entity_bounds, free_place
+from satAOI_geo.aoi import Loop
 from satAOI_geo.errors import InputError, UnreadableError
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import Circle, FloorPlan, Frame, Kind, Obstacle
@@ -108,7 +110,9 @@ def test_arcs_stay_arcs_in_the_outline_and_in_the_hatch(tmp_path: Path) -> None:
     assert hole == [(1000, 1500, -1), (1400, 1500, -1)]
     assert disc == [(5000, 1500, 1), (5700, 1500, 1)]
     hatches = on_layer(document, "SATAOI-AOI")
-    assert [path.vertices for hatch in hatches for path in hatch.paths] == [outer, hole, disc]
+    filled = [path.vertices for hatch in hatches for path in hatch.paths]
+    # the rounded rectangle begins in the middle of its right side, 2300 mm long
+    assert filled == [[(2000, 1500, 0), *outer[3:], *outer[:3]], hole, disc]
 
 
 def test_outlines_are_closed_and_carry_their_part(tmp_path: Path) -> None:
@@ -648,6 +652,25 @@ def test_librecad_shows_the_walls_over_the_fill(tmp_path: Path) -> None:
     # outlines and a text hide a little of both
     in_view = pixels[0, 255, 255] / pixels[197, 232, 183]
     assert in_view == pytest.approx(bar_mm2 / (result.aoi.area_mm2 - bar_mm2), rel=0.1)
+
+
+def test_hatches_begin_where_no_vertices_crowd() -> None:
+    crowded = np.array([(0, 0, 0), (0.01, 0, 0), (8, 0, 0.5), (8, 9, 0), (0, 9, 0)])
+    begun = begun_on_a_straight(crowded)
+    assert begun.tolist() == [
+        [0, 4.5, 0],
+        [0, 0, 0],
+        [0.01, 0, 0],
+        [8, 0, 0.5],
+        [8, 9, 0],
+        [0, 9, 0],
+    ]
+    assert Loop(begun).area_mm2() == pytest.approx(Loop(crowded).area_mm2(), rel=1e-15)
+
+
+def test_a_loop_of_arcs_alone_is_left_as_it_is() -> None:
+    disc = np.array([(0.0, 0.0, 1.0), (2.0, 0.0, 1.0)])
+    assert begun_on_a_straight(disc) is disc
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,22 @@ BYLAYER: Final = 256
 """The colour index that means: as the layer."""
 
 
+def begun_on_a_straight(vertices: FloatArray) -> FloatArray:
+    """The same loop, shape (n, 3), begun in the middle of its longest straight piece.
+
+    LibreCAD 2.2 takes a loop for closed as soon as it comes back to the pixel it began in. Begun
+    where vertices crowd, it ends too early, and what follows joins the next loop: a wedge of the
+    fill is missing. A loop of arcs alone stays as it is.
+    """
+    begins, ends = vertices[:, :2], np.roll(vertices[:, :2], -1, axis=0)
+    lengths = np.where(vertices[:, 2] == 0, np.hypot(*(ends - begins).T), 0.0)
+    longest = int(lengths.argmax())
+    if lengths[longest] == 0:
+        return vertices
+    middle = (*((begins[longest] + ends[longest]) / 2), 0.0)
+    return np.vstack((middle, np.roll(vertices, -longest - 1, axis=0)))
+
+
 def outline_of(polygon: Polygon) -> Outline:
     """A polygon as an outline of straight lines."""
     exterior, *holes = (
@@ -89,11 +105,12 @@ class Pen:
     def fill(self, outline: Outline) -> Hatch:
         """A solid hatch of one connected part with its holes, bounded by true arcs."""
         hatch = self.space.add_hatch(color=self.colour, dxfattribs=self._attributes())
-        hatch.paths.add_polyline_path(
-            self._with_bulges(outline.exterior), flags=BOUNDARY_PATH_EXTERNAL
-        )
-        for hole in outline.holes:
-            hatch.paths.add_polyline_path(self._with_bulges(hole), flags=BOUNDARY_PATH_OUTERMOST)
+        for loop, flags in (
+            (outline.exterior, BOUNDARY_PATH_EXTERNAL),
+            *((hole, BOUNDARY_PATH_OUTERMOST) for hole in outline.holes),
+        ):
+            vertices = begun_on_a_straight(self._with_bulges(loop))
+            hatch.paths.add_polyline_path(vertices, flags=flags)
         return hatch
 
     def _with_bulges(self, loop: Loop) -> FloatArray:
