@@ -13,7 +13,7 @@ triple 21, 28, 35 alone puts dozens of circles through one point, and discs 70 s
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numba
 import numpy as np
@@ -34,42 +34,18 @@ WELD = 1e-7
 """Ends of arcs this close, in steps, are one point: a nanometre at a step of 10 mm. Rounding moves
 an end by 1e-13, and by 4e-9 where two discs all but touch."""
 
+NOISE_RAD = 1e-13
+"""Gaps this narrow come from rounding, and so are left out."""
+
 TURN = 2 * math.pi
 
-Offset: TypeAlias = tuple[int, int]
-"""x and y from one node to another, in steps."""
 
-
-class Gap(NamedTuple):
-    """A stretch of a node's circle that no disc looked at so far covers, counter-clockwise.
-
-    With (0, 0) for opener and closer nothing covers the circle yet.
-    """
-
-    begin_rad: float
-    end_rad: float
-    opener: Offset
-    closer: Offset
-
-
-class Buckets(NamedTuple):
-    """Exposed nodes, sorted into squares so that those near a place are found quickly.
-
-    Attributes:
-        x: Columns of the nodes, shape (n,).
-        y: Rows of the nodes, shape (n,).
-        first: The nodes of square [row, column] start at first[row * columns + column].
-        rows: Squares in y.
-        columns: Squares in x.
-        side: Of a square, in steps.
-    """
-
-    x: IntArray
-    y: IntArray
-    first: IntArray
-    rows: int
-    columns: int
-    side: int
+BEGIN, END, OPENER, CLOSER = 0, 1, 2, 4
+"""Columns of an array of gaps, stretches of a node's circle that no disc looked at so far covers:
+directions in which the gap begins and ends, counter-clockwise in rad, begin < end; then x and y
+from the node to the opener, and to the closer. A circle that nothing covers yet is one gap from -π
+to π with (0, 0) for both. The kernels pass plain arrays: a cache of compiled code that names a
+class cannot be read once the class is gone."""
 
 
 def covered_cells(reached: BoolArray, radius: float) -> BoolArray:
@@ -123,8 +99,11 @@ def boundary(reached: BoolArray, radius: float) -> Arcs:
     coarser than that, every node counts as exposed.
     """
     is_fine = 2 * radius * radius > 1 + TIE
-    exposed = _sorted(_exposed(reached) if is_fine else reached, math.ceil(radius))
-    table = _uncovered(reached, exposed, radius).reshape(-1, 7)
+    side = math.ceil(radius)
+    nodes, first = _sorted(_exposed(reached) if is_fine else reached, side)
+    # each disc looked at parts one gap in two at most: 8 neighbours, then the exposed nodes
+    gaps = np.empty((1 + 8 + len(nodes), 6))
+    table = _uncovered(reached, nodes, first, side, gaps, radius).reshape(-1, 7)
     return _linked(table[:, :2].astype(np.int64), table[:, 2:4], table[:, 4:6], table[:, 6])
 
 
@@ -135,14 +114,24 @@ def _exposed(reached: BoolArray) -> BoolArray:
     return reached & ~inner
 
 
-def _sorted(nodes: BoolArray, side: int) -> Buckets:
-    """The nodes of a raster in squares of a side."""
-    rows, columns = (size // side + 1 for size in nodes.shape)
-    y, x = np.nonzero(nodes)
+def _sorted(chosen: BoolArray, side: int) -> tuple[IntArray, IntArray]:
+    """The nodes of a raster, sorted into squares so that those near a place are found quickly.
+
+    Args:
+        chosen: Shape (n_rows, n_columns).
+        side: Of a square, in steps.
+
+    Returns:
+        x and y of the nodes, shape (n, 2); and where those of each square begin in it, shape
+        (rows, columns + 1): square [row, column] holds first[row, column]:first[row, column + 1].
+    """
+    rows, columns = (size // side + 1 for size in chosen.shape)
+    y, x = np.nonzero(chosen)
     square = y // side * columns + x // side
     order = np.argsort(square, kind="stable")
-    counts = np.bincount(square, minlength=rows * columns)
-    return Buckets(x[order], y[order], np.append(0, np.cumsum(counts)), rows, columns, side)
+    ends = np.append(0, np.cumsum(np.bincount(square, minlength=rows * columns)))
+    first = ends[np.arange(rows)[:, np.newaxis] * columns + np.arange(columns + 1)]
+    return np.column_stack((x, y))[order], first
 
 
 def _linked(nodes: IntArray, begins: FloatArray, ends: FloatArray, spans_rad: FloatArray) -> Arcs:
@@ -221,58 +210,85 @@ def _runs(reached: BoolArray) -> tuple[IntArray, IntArray, IntArray]:
 
 
 @numba.njit(nogil=True, cache=True)
-def _uncovered(reached: BoolArray, exposed: Buckets, radius: float) -> FloatArray:
+def _uncovered(
+    reached: BoolArray,
+    nodes: IntArray,
+    first: IntArray,
+    side: int,
+    gaps: FloatArray,
+    radius: float,
+) -> FloatArray:
     """The arcs that no other disc covers, unordered, as 7 numbers each in one flat array.
 
     They are x and y of the node, of the arc's begin and of its end, and the arc's angle.
+
+    Args:
+        reached: Shape (n_rows, n_columns).
+        nodes: The exposed nodes, see `_sorted`.
+        first: Where those of each square begin.
+        side: Of a square.
+        gaps: Room for the gaps of one circle, see `BEGIN`.
+        radius: ρ.
     """
     numbers = [0.0 for _ in range(0)]
-    for k in range(exposed.x.size):
-        x, y = exposed.x[k], exposed.y[k]
-        gaps = _gaps_of_neighbours(reached, x, y, radius)
-        for gap in _gaps_of_exposed(gaps, exposed, x, y, radius):
-            _append_arcs(numbers, float(x), float(y), gap, radius)
+    for k in range(nodes.shape[0]):
+        x, y = nodes[k, 0], nodes[k, 1]
+        n = _cut_by_neighbours(gaps, reached, x, y, radius)
+        n = _cut_by_exposed(gaps, n, nodes, first, side, x, y, radius)
+        for gap in range(n):
+            _append_arcs(numbers, gaps[gap], float(x), float(y), radius)
     return np.array(numbers)
 
 
 @numba.njit(nogil=True, cache=True)
-def _gaps_of_neighbours(reached: BoolArray, x: int, y: int, radius: float) -> list[Gap]:
-    """What the 8 neighbours leave of the circle about (x, y).
+def _cut_by_neighbours(gaps: FloatArray, reached: BoolArray, x: int, y: int, radius: float) -> int:
+    """Write what the 8 neighbours leave of the circle about (x, y), and return how many gaps.
 
     The 4 would do; with the diagonal ones less is left to look for.
     """
-    n_rows, n_columns = reached.shape
-    gaps = [Gap(-math.pi, math.pi, (0, 0), (0, 0))]
-    for iy in range(max(0, y - 1), min(n_rows, y + 2)):
-        for ix in range(max(0, x - 1), min(n_columns, x + 2)):
+    _set_end(gaps[0], BEGIN, -math.pi, 0, 0)
+    _set_end(gaps[0], END, math.pi, 0, 0)
+    n = 1
+    for iy in range(max(0, y - 1), min(reached.shape[0], y + 2)):
+        for ix in range(max(0, x - 1), min(reached.shape[1], x + 2)):
             if reached[iy, ix]:
-                gaps = _cut(gaps, ix - x, iy - y, radius)
-    return gaps
+                n = _cut(gaps, n, ix - x, iy - y, radius)
+    return n
 
 
 @numba.njit(nogil=True, cache=True)
-def _gaps_of_exposed(gaps: list[Gap], exposed: Buckets, x: int, y: int, radius: float) -> list[Gap]:
-    """What the exposed nodes leave of the gaps in the circle about (x, y).
+def _cut_by_exposed(
+    gaps: FloatArray,
+    n: int,
+    nodes: IntArray,
+    first: IntArray,
+    side: int,
+    x: int,
+    y: int,
+    radius: float,
+) -> int:
+    """Write what the exposed nodes leave of n gaps in the circle about (x, y); return how many.
 
     A disc meets a gap when its centre is within ρ of some point of it, so within
     ρ + 2ρ·sin(angle / 4) of its middle. For the gap of a straight wall that is little over ρ,
     and hardly any node that is not a neighbour comes so close.
     """
-    side = exposed.side
-    left = gaps
-    for gap in gaps:
-        middle_rad = (gap.begin_rad + gap.end_rad) / 2
+    before = gaps[:n].copy()
+    for k in range(n):
+        begin_rad, end_rad = before[k, BEGIN], before[k, END]
+        middle_rad = (begin_rad + end_rad) / 2
         middle_x, middle_y = radius * math.cos(middle_rad), radius * math.sin(middle_rad)
+        reach = radius * (1 + 2 * math.sin((end_rad - begin_rad) / 4))
         # where discs touch, the centre of one lies on the rim of this reach
-        reach = radius * (1 + 2 * math.sin((gap.end_rad - gap.begin_rad) / 4)) * (1 + TIE)
-        low, high = _squares(y + middle_y, reach, side, exposed.rows)
-        begin, end = _squares(x + middle_x, reach, side, exposed.columns)
-        for row in range(low * exposed.columns, high * exposed.columns, exposed.columns):
-            for k in range(exposed.first[row + begin], exposed.first[row + end]):
-                dx, dy = exposed.x[k] - x, exposed.y[k] - y
-                if (dx - middle_x) ** 2 + (dy - middle_y) ** 2 <= reach * reach:
-                    left = _cut(left, dx, dy, radius)
-    return left
+        square = reach * reach * (1 + TIE)
+        low, high = _squares(y + middle_y, reach, side, first.shape[0])
+        begin, end = _squares(x + middle_x, reach, side, first.shape[1] - 1)
+        for row in range(low, high):
+            for node in range(first[row, begin], first[row, end]):
+                dx, dy = nodes[node, 0] - x, nodes[node, 1] - y
+                if n and (dx - middle_x) ** 2 + (dy - middle_y) ** 2 <= square:
+                    n = _cut(gaps, n, dx, dy, radius)
+    return n
 
 
 @numba.njit(nogil=True, cache=True)
@@ -283,72 +299,78 @@ def _squares(middle: float, reach: float, side: int, n_squares: int) -> tuple[in
 
 
 @numba.njit(nogil=True, cache=True)
-def _cut(gaps: list[Gap], dx: int, dy: int, radius: float) -> list[Gap]:
-    """The gaps in a circle less what the open disc at (dx, dy) from its node covers.
+def _cut(gaps: FloatArray, n: int, dx: int, dy: int, radius: float) -> int:
+    """Take what the open disc at (dx, dy) from the node covers out of n gaps; return how many.
 
     A disc that only touches covers nothing, but parts the gap at the point it touches.
     """
     spread = _spread(dx, dy, radius)
     if spread < 0:
-        return gaps
+        return n
     half_rad = math.atan(spread)
     covers_rad = math.atan2(dy, dx) - half_rad
-    if not _meets(gaps, covers_rad, 2 * half_rad):
-        return gaps
-    kept = gaps[:0]
-    for gap in gaps:
-        enters_rad = gap.begin_rad + (covers_rad - gap.begin_rad) % TURN
+    if n == 1 and gaps[0, OPENER] == gaps[0, OPENER + 1] == 0:
+        _set_end(gaps[0], BEGIN, covers_rad + 2 * half_rad, dx, dy)
+        _set_end(gaps[0], END, covers_rad + TURN, dx, dy)
+        return 1
+    # backwards, so that the gaps this makes, at the end, are not looked at again
+    for k in range(n - 1, -1, -1):
+        gap = gaps[k]
+        begin_rad, end_rad = gap[BEGIN], gap[END]
+        enters_rad = begin_rad + (covers_rad - begin_rad) % TURN
         leaves_rad = enters_rad + 2 * half_rad
-        if gap.opener == (0, 0):
-            kept.append(Gap(leaves_rad, enters_rad + TURN, (dx, dy), (dx, dy)))
-            continue
-        if leaves_rad < gap.end_rad:
-            kept.append(Gap(leaves_rad, gap.end_rad, (dx, dy), gap.closer))
-        begin_rad, opener = gap.begin_rad, gap.opener
+        if leaves_rad + NOISE_RAD < end_rad:
+            _copy(gap, gaps[n])
+            _set_end(gaps[n], BEGIN, leaves_rad, dx, dy)
+            n += 1
+        if enters_rad < end_rad:
+            _set_end(gap, END, enters_rad, dx, dy)
         # the end of what the disc covers may come round to the gap's begin
         if leaves_rad - TURN > begin_rad:
-            begin_rad, opener = leaves_rad - TURN, (dx, dy)
-        end_rad, closer = gap.end_rad, gap.closer
-        if enters_rad < end_rad:
-            end_rad, closer = enters_rad, (dx, dy)
-        if begin_rad < end_rad:
-            kept.append(Gap(begin_rad, end_rad, opener, closer))
-    return kept
+            _set_end(gap, BEGIN, leaves_rad - TURN, dx, dy)
+        if gap[BEGIN] + NOISE_RAD >= gap[END]:
+            n -= 1
+            _copy(gaps[n], gap)
+    return n
 
 
 @numba.njit(nogil=True, cache=True)
-def _meets(gaps: list[Gap], covers_rad: float, width_rad: float) -> bool:
-    """Whether an interval of directions meets a gap: most do not, and need no new list."""
-    for gap in gaps:
-        enters_rad = (covers_rad - gap.begin_rad) % TURN
-        if enters_rad < gap.end_rad - gap.begin_rad or enters_rad + width_rad > TURN:
-            return True
-    return False
+def _set_end(gap: FloatArray, end: int, direction_rad: float, dx: int, dy: int) -> None:
+    """Let a gap begin (`BEGIN`) or end (`END`) in a direction, because of the disc at (dx, dy)."""
+    gap[end] = direction_rad
+    gap[OPENER + 2 * end] = dx
+    gap[OPENER + 2 * end + 1] = dy
 
 
 @numba.njit(nogil=True, cache=True)
-def _append_arcs(numbers: list[float], x: float, y: float, gap: Gap, radius: float) -> None:
+def _copy(gap: FloatArray, to: FloatArray) -> None:
+    """Copy a gap; number by number, since assigning arrays takes longer to compile."""
+    for column in range(gap.size):
+        to[column] = gap[column]
+
+
+@numba.njit(nogil=True, cache=True)
+def _append_arcs(numbers: list[float], gap: FloatArray, x: float, y: float, radius: float) -> None:
     """Append a gap in the circle about (x, y) as an arc, or as two if over half a circle."""
-    begin_x, begin_y = _crossing(gap.opener, 1, radius)
-    end_x, end_y = _crossing(gap.closer, -1, radius)
-    span_rad = gap.end_rad - gap.begin_rad
+    begin_x, begin_y = _crossing(gap[OPENER], gap[OPENER + 1], 1, radius)
+    end_x, end_y = _crossing(gap[CLOSER], gap[CLOSER + 1], -1, radius)
+    span_rad = gap[END] - gap[BEGIN]
     if span_rad <= math.pi:
         numbers.extend((x, y, x + begin_x, y + begin_y, x + end_x, y + end_y, span_rad))
         return
-    middle_rad = gap.begin_rad + span_rad / 2
+    middle_rad = gap[BEGIN] + span_rad / 2
     middle_x, middle_y = x + radius * math.cos(middle_rad), y + radius * math.sin(middle_rad)
     numbers.extend((x, y, x + begin_x, y + begin_y, middle_x, middle_y, span_rad / 2))
     numbers.extend((x, y, middle_x, middle_y, x + end_x, y + end_y, span_rad / 2))
 
 
 @numba.njit(nogil=True, cache=True)
-def _crossing(other: Offset, side: int, radius: float) -> tuple[float, float]:
-    """Where the circle about another node meets that about (0, 0): to its left for side 1, else -1.
+def _crossing(dx: float, dy: float, side: int, radius: float) -> tuple[float, float]:
+    """Where the circle about (dx, dy) meets that about (0, 0): on its left for side 1, else -1.
 
     From the integers, not from the angle: so the crossings along a straight wall lie on a
     straight line to the last bit. A circle that meets no other begins and ends at its left.
     """
-    dx, dy = other
     if dx == 0 and dy == 0:
         return -radius, 0.0
     across = side * _spread(dx, dy, radius)
@@ -356,7 +378,7 @@ def _crossing(other: Offset, side: int, radius: float) -> tuple[float, float]:
 
 
 @numba.njit(nogil=True, cache=True)
-def _spread(dx: int, dy: int, radius: float) -> float:
+def _spread(dx: float, dy: float, radius: float) -> float:
     """Tangent of half the angle over which the disc at (dx, dy) covers the circle at (0, 0).
 
     0 when they touch, below 0 when they do not meet or are the same.
