@@ -36,6 +36,9 @@ MAX_SAMPLES: Final = 200_000
 ON_LINE_MM: Final = 1e-3
 """A line this close to a wall runs along it."""
 
+CRUMB_MM2: Final = 1.0
+"""Faces smaller than this lie between lines that mean to be one."""
+
 DEEP: Final = 4.0
 """A space this many times as large as the square on its mouth is a passage, not a niche."""
 
@@ -95,8 +98,8 @@ class Mesh:
         first, second, third = np.moveaxis(corners, 1, 0)
         along, across = second - first, third - first
         areas_mm2 = np.abs(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]) / 2
-        centres = shapely.points(corners.mean(axis=1))
-        triangles, owners = shapely.STRtree(faces).query(centres, predicate="within")
+        centres = shapely.STRtree(shapely.points(corners.mean(axis=1)))
+        owners, triangles = centres.query(faces, predicate="contains")
         n = len(faces)
         total_mm2 = np.bincount(owners, areas_mm2[triangles], n)
         dry_mm2 = np.bincount(owners, (areas_mm2 * ~outside)[triangles], n)
@@ -146,7 +149,8 @@ def _dry_faces(mesh: Mesh, walls: BaseGeometry, opening_mm: float) -> list[Polyg
     middles = shapely.line_interpolate_point(rim, 0.5, normalized=True)
     seals = rim[~shapely.dwithin(middles, walls, ON_LINE_MM)]
     noded = shapely.union_all([walls, *seals])
-    faces = rounded(polygons_in(shapely.polygonize([noded]).geoms))
+    cut = np.array(shapely.polygonize([noded]).geoms)
+    faces = rounded(cut[shapely.area(cut) > CRUMB_MM2])
     if not faces:
         return []
     tree = shapely.STRtree(seals)

@@ -1,16 +1,41 @@
-"""Open a DXF file: what it really is, its bytes' digest, and the document in it."""
+"""Open a DXF file: its bytes, their digest, and the document in them, repaired if need be."""
 
 import hashlib
+import io
+import logging
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 import ezdxf
+from ezdxf import recover
 from ezdxf.document import Drawing
 from ezdxf.lldxf.const import DXFError
+from ezdxf.lldxf.tagger import binary_tags_loader
 
-from satAOI_adapters.dxf_read import limits
+from satAOI_adapters.dxf_read import limits, sniff
+from satAOI_adapters.dxf_read.encodings import decoded
+from satAOI_adapters.dxf_read.entities import DRAWN
+from satAOI_adapters.layers import LayerTable
 from satAOI_geo.errors import UnreadableError
 from satAOI_geo.plan import Finding
+
+FAULTS: Final = (DXFError, ValueError, LookupError, TypeError, AttributeError, RecursionError)
+"""What ezdxf raises on damaged drawings."""
+
+ENTITY: Final = re.compile(
+    rf"^[ \t]*0[ \t]*\n[ \t]*({'|'.join(map(re.escape, DRAWN))})[ \t]*$", re.MULTILINE
+)
+"""The beginning of an entity that is read."""
+
+NUMBER_CODES: Final = (*range(10, 60), *range(110, 150), *range(210, 240))
+"""Group codes whose value is a number with a fraction."""
+
+PAIR: Final = re.compile(r"^[ \t]*(\d+)[ \t]*\n(.*)$", re.MULTILINE)
+"""A group code and its value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,20 +53,142 @@ class Opened:
     findings: tuple[Finding, ...] = ()
 
 
-def open_drawing(path: Path) -> Opened:
+def open_drawing(path: Path, table: LayerTable, encoding: str | None = None) -> Opened:
     """Open a DXF file.
 
+    Args:
+        path: The file.
+        table: Layer names that mean something; they tell which encoding is right.
+        encoding: Goes before the one that the file declares.
+
     Raises:
-        UnreadableError: If there is no such file, or it is not a readable DXF.
+        InputError: If there is no such encoding.
+        UnreadableError: If there is no such file, or it is not a whole, readable DXF.
         LimitError: If it is larger than `limits.MAX_FILE_BYTES`.
     """
+    content = _content(path)
+    sniff.check(content, path.name)
+    sha256 = hashlib.sha256(content).hexdigest()
+    if content.startswith(sniff.BINARY_DXF):
+        document, repairs = _loaded(
+            path.name,
+            lambda: Drawing.load(binary_tags_loader(content, errors="surrogateescape")),
+            lambda: recover.read(io.BytesIO(content))[0],
+        )
+        return Opened(document, sha256, repairs)
+    names = decoded(content, table, encoding)
+    text = names.text.replace("\r\n", "\n")
+    document, repairs = _loaded(
+        path.name,
+        lambda: ezdxf.read(io.StringIO(text)),
+        # escapes need no encoding, so none can be mistaken
+        lambda: recover.read(io.BytesIO(text.encode("ascii", "dxfreplace")))[0],
+        text,
+    )
+    _check_complete(document, text, path.name)
+    return Opened(document, sha256, (*names.findings, *repairs))
+
+
+def _content(path: Path) -> bytes:
     try:
-        content = path.read_bytes()
+        limits.hold(
+            "bytes", path.stat().st_size, limits.MAX_FILE_BYTES, "purge the drawing or split it"
+        )
+        return path.read_bytes()
     except OSError as error:
         raise UnreadableError(f"cannot read '{path}': {error.strerror or error}") from error
-    limits.hold("bytes", len(content), limits.MAX_FILE_BYTES, "purge the drawing or split it")
+
+
+def _loaded(
+    name: str, load: Callable[[], Drawing], repair: Callable[[], Drawing], text: str = ""
+) -> tuple[Drawing, tuple[Finding, ...]]:
+    """The document, loaded as it is or repaired, and what ezdxf had to say about it."""
+    with _heard() as said:
+        try:
+            return load(), _repairs(said)
+        except FAULTS as error:
+            fault = _one_line(error)
+        _check_numbers(text, name)
+        try:
+            document = repair()
+        except FAULTS as error:
+            raise UnreadableError(
+                f"'{name}' is a damaged DXF drawing: {_one_line(error)}; open it in a CAD program, "
+                "run its audit and save it again"
+            ) from error
+    return document, (
+        Finding(
+            "file-repaired",
+            f"the file is damaged ({fault}) and was repaired while reading",
+            "open it in a CAD program, run its audit and save it again",
+        ),
+        *_repairs(said),
+    )
+
+
+@contextmanager
+def _heard() -> Iterator[list[str]]:
+    """What ezdxf logs as a warning or worse, kept as data and off the screen."""
+    said: list[str] = []
+    handler = logging.Handler(logging.WARNING)
+    handler.emit = lambda record: said.append(record.getMessage())  # type: ignore[method-assign]
+    logger = logging.getLogger("ezdxf")
+    propagates, logger.propagate = logger.propagate, False
+    logger.addHandler(handler)
     try:
-        document = ezdxf.readfile(path)
-    except (DXFError, OSError, ValueError) as error:
-        raise UnreadableError(f"'{path}' is not a readable DXF drawing: {error}") from error
-    return Opened(document, hashlib.sha256(content).hexdigest())
+        yield said
+    finally:
+        logger.removeHandler(handler)
+        logger.propagate = propagates
+
+
+def _repairs(said: list[str]) -> tuple[Finding, ...]:
+    if not said:
+        return ()
+    return (
+        Finding(
+            "file-flaws",
+            f"{len(said)} flaws in the file were noticed while reading, the first: "
+            f"{_one_line(said[0])}",
+            "run the audit of a CAD program over it if something is missing",
+        ),
+    )
+
+
+def _check_numbers(text: str, name: str) -> None:
+    """Name the first value that should be a number and is not.
+
+    Raises:
+        UnreadableError: If there is one; a repair would cut `1,5` down to 1.
+    """
+    for pair in PAIR.finditer(text):
+        if int(pair[1]) not in NUMBER_CODES:
+            continue
+        try:
+            float(pair[2])
+        except ValueError:
+            line = text.count("\n", 0, pair.start(2)) + 1
+            hint = "; export it with decimal points" if "," in pair[2] else ""
+            raise UnreadableError(
+                f"'{name}' is damaged: line {line} should be a number and is "
+                f"'{pair[2].strip()[:40]}'{hint}"
+            ) from None
+
+
+def _check_complete(document: Drawing, text: str, name: str) -> None:
+    """Refuse a document that holds fewer entities than the file.
+
+    Raises:
+        UnreadableError: If reading or repairing lost some.
+    """
+    written = len(ENTITY.findall(text))
+    held = sum(entity.dxftype() in DRAWN for entity in document.entitydb.values())
+    if held < written:
+        raise UnreadableError(
+            f"'{name}' is damaged: {written - held} of its {written} lines, polylines and other "
+            "shapes cannot be read; open it in a CAD program, run its audit and save it again"
+        )
+
+
+def _one_line(error: object) -> str:
+    return " ".join(str(error).split()).rstrip(".")

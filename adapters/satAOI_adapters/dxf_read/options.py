@@ -11,9 +11,11 @@ class ReadOptions:
     Attributes:
         units: Key of `units.MM_PER_UNIT`; goes before what the drawing says.
         layers: The user's own layer patterns (TOML).
+        encoding: Of the names in the file; goes before what the file declares.
         include_hidden: Read layers that are frozen or switched off, too.
     """
 
     units: str | None = None
     layers: Path | None = None
+    encoding: str | None = None
     include_hidden: bool = False

@@ -13,13 +13,17 @@ from ezdxf.document import Drawing
 from satAOI_adapters.dxf_read import limits
 from satAOI_adapters.dxf_read.curves import Arc, Piece, Point
 from satAOI_adapters.dxf_read.entities import DRAWN, NO_LINEWORK, Feature, features_of
-from satAOI_adapters.dxf_read.expand import Placed, expand
+from satAOI_adapters.dxf_read.estimate import estimate
+from satAOI_adapters.dxf_read.expand import Expansion, Placed, expand
 from satAOI_adapters.dxf_read.opening import open_drawing
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.units import Unit, unit_of
 from satAOI_adapters.layers import KINDS, LayerTable, Meaning, Verdict, layer_table
 from satAOI_geo.errors import EmptyPlanError
 from satAOI_geo.plan import Finding, Frame
+
+FEET_AND_INCHES: Final = (3, 4)
+"""$LUNITS of a drawing that writes lengths in feet and inches."""
 
 LISTED: Final = 5
 """Layers that a message names before it counts the rest."""
@@ -73,28 +77,42 @@ def survey(path: Path, options: ReadOptions) -> Survey:
         LimitError: If it asks for more than `limits` allows.
     """
     table = layer_table(options.layers)
-    opened = open_drawing(path)
+    opened = open_drawing(path, table, options.encoding)
     expansion = expand(opened.document, include_hidden=options.include_hidden)
     drawn = [placed for placed in expansion.placed if placed.kind in DRAWN]
     seen, fallback = _with_meaning(drawn, table)
-    box = _box(seen)
+    rough = [(e.verdict.meaning, f) for e in seen for f in features_of(e.placed, 1.0, (0.0, 0.0))]
+    box = _box(feature for _, feature in rough)
     if box is None:
         raise EmptyPlanError(
-            f"'{path}' shows nothing in model space that could be a plan; "
-            f"{_what_else(expansion.placed, expansion.hidden)}"
+            f"'{path.name}' shows nothing in model space that could be a plan; "
+            f"{_what_else(expansion)}"
         )
     size = (box[2] - box[0], box[3] - box[1])
-    unit = unit_of(opened.document, options.units, size, path.name)
-    findings = (*opened.findings, *expansion.findings, *_hidden(expansion.hidden), *fallback)
+    header = opened.document.header
+    guess = estimate(
+        rough,
+        size,
+        [placed.entity for placed in expansion.placed if placed.kind not in DRAWN],
+        in_feet_and_inches=header.get("$LUNITS", 2) in FEET_AND_INCHES,
+    )
+    known = unit_of(header.get("$INSUNITS", 0), options.units, guess, size, path.name)
     return Survey(
         path,
         opened.sha256,
         opened.document,
         seen,
         expansion.hidden,
-        unit,
+        known.unit,
         box,
-        (*findings, *_unread(expansion.placed)),
+        (
+            *opened.findings,
+            *known.findings,
+            *expansion.findings,
+            *_hidden(expansion.hidden),
+            *_unread(expansion.placed),
+            *fallback,
+        ),
     )
 
 
@@ -117,10 +135,16 @@ def _by_block(blocks: Sequence[str], table: LayerTable) -> Verdict:
 
 
 def _with_meaning(
-    drawn: Iterable[Placed], table: LayerTable
+    drawn: Sequence[Placed], table: LayerTable
 ) -> tuple[tuple[Seen, ...], tuple[Finding, ...]]:
     """Each entity with its meaning; a drawing without any layer of obstacles is all walls."""
-    seen = tuple(Seen(placed, verdict_of(placed, table)) for placed in drawn)
+    # a drawing has few layers and blocks, and many entities on each
+    known: dict[tuple[str, tuple[str, ...]], Verdict] = {}
+    for placed in drawn:
+        name = (placed.layer, placed.blocks)
+        if name not in known:
+            known[name] = verdict_of(placed, table)
+    seen = tuple(Seen(placed, known[placed.layer, placed.blocks]) for placed in drawn)
     telling = set(KINDS) - {Meaning.WINDOW}
     if any(entity.verdict.meaning in telling for entity in seen):
         return seen, ()
@@ -143,12 +167,11 @@ def _with_meaning(
     )
 
 
-def _box(seen: Iterable[Seen]) -> tuple[float, float, float, float] | None:
-    """Left, bottom, right, top of all ends and arc boxes, in drawing units."""
+def _box(features: Iterable[Feature]) -> tuple[float, float, float, float] | None:
+    """Left, bottom, right, top of all ends and full circles, in drawing units."""
     points = [
         point
-        for entity in seen
-        for feature in features_of(entity.placed, 1.0, (0.0, 0.0))
+        for feature in features
         for path in feature.paths
         for piece in path.pieces
         for point in _spots(piece)
@@ -170,16 +193,18 @@ def _spots(piece: Piece) -> tuple[Point, ...]:
     return piece.start, piece.end
 
 
-def _what_else(placed: Sequence[Placed], hidden: Counter[str]) -> str:
+def _what_else(expansion: Expansion) -> str:
     """What a drawing without linework does hold."""
-    if hidden:
+    if expansion.hidden:
         return (
-            f"{sum(hidden.values())} entities are on layers that are off or frozen: "
+            f"{sum(expansion.hidden.values())} entities are on layers that are off or frozen: "
             "switch these on or give --include-hidden"
         )
-    if placed:
-        kinds = Counter(entity.kind for entity in placed)
-        counts = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common(5))
+    kinds = Counter(placed.kind for placed in expansion.placed)
+    counts = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common(LISTED))
+    if any(kind in DRAWN for kind in kinds):
+        return f"it holds {counts}, all without any length: check what was exported"
+    if kinds:
         return f"it holds {counts}: save the plan as lines and polylines"
     return "it is empty: check that it was saved from the right file"
 

@@ -1,0 +1,217 @@
+"""An estimate of the unit of length from what buildings have in common.
+
+Doors are as wide as people, walls as thick as bricks, columns as thick as beams, texts as high as
+can be read on paper. Each sort of length speaks for the units in which it falls into its range.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import shapely
+from ezdxf.entities import DXFEntity
+from shapely.geometry import LineString
+
+from satAOI_adapters.dxf_read.curves import Arc, Line, Path
+from satAOI_adapters.dxf_read.entities import Feature
+from satAOI_adapters.layers import Meaning
+from satAOI_geo.plan import FloatArray
+from satAOI_geo.units import MM_PER_UNIT
+
+CANDIDATES: Final = ("mm", "m", "cm", "in")
+"""Units that buildings are drawn in; whoever draws in feet says so in the header."""
+
+ENOUGH: Final = 0.6
+"""Share of the evidence that must speak for the best unit."""
+
+LEAD: Final = 0.2
+"""By how much the best unit must be ahead of the next, as a share of the evidence."""
+
+SLIM: Final = 0.25
+"""A wall is thinner than this share of its length."""
+
+OFTEN: Final = 20
+"""A sign seen so many times needs no second one to contradict a header."""
+
+MAX_LINES: Final = 1500
+"""Wall lines that are compared with each other, the longest first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sign:
+    """A sort of length and what it is in a building.
+
+    Attributes:
+        name: In words.
+        least_mm: Hardly any is smaller.
+        most_mm: Hardly any is larger.
+        weight: How much it counts beside the others.
+        at_least: Seen so many times, it may contradict a header; 0 if never.
+    """
+
+    name: str
+    least_mm: float
+    most_mm: float
+    weight: float
+    at_least: int
+
+
+DOORS: Final = Sign("door widths", 550, 1350, 1.0, at_least=2)
+ARCS: Final = Sign("quarter turns", 550, 1350, 0.4, at_least=0)
+WALLS: Final = Sign("wall thickness", 60, 650, 1.0, at_least=4)
+COLUMNS: Final = Sign("column sizes", 90, 1600, 0.7, at_least=4)
+TEXTS: Final = Sign("text heights", 40, 3000, 0.5, at_least=5)
+DIMENSIONS: Final = Sign("dimensions", 200, 60_000, 0.4, at_least=0)
+EXTENT: Final = Sign("overall size", 3000, 500_000, 0.3, at_least=0)
+
+CUSTOM: Final = 0.7
+"""How much feet and inches as the drawing's number format count beside the other signs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """The unit that most of the evidence speaks for.
+
+    Attributes:
+        unit: Key of `units.MM_PER_UNIT`.
+        reasons: What speaks for it, in words.
+        against: Units that two signs, or one seen often, rule out.
+    """
+
+    unit: str
+    reasons: str
+    against: frozenset[str] = frozenset()
+
+
+def estimate(
+    features: Sequence[tuple[Meaning | None, Feature]],
+    size: tuple[float, float],
+    others: Iterable[DXFEntity],
+    *,
+    in_feet_and_inches: bool,
+) -> Estimate | None:
+    """The unit of a drawing, or None if the evidence is thin or divided.
+
+    Args:
+        features: What is drawn, in drawing units, with its meaning.
+        size: Width and height of it.
+        others: Entities that draw no lines: texts and dimensions among them.
+        in_feet_and_inches: Whether the drawing writes lengths as feet and inches, which makes its
+            unit the inch.
+    """
+    explained = list(others)
+    evidence = [
+        (DOORS, _quarter_turns(features, of_doors=True)),
+        (ARCS, _quarter_turns(features, of_doors=False)),
+        (WALLS, _wall_thicknesses(features)),
+        (COLUMNS, _column_sizes(features)),
+        (TEXTS, _attributes(explained, {"TEXT": "height", "MTEXT": "char_height"})),
+        (DIMENSIONS, _attributes(explained, {"DIMENSION": "actual_measurement"})),
+        (EXTENT, np.array([max(size)])),
+    ]
+    known = [(sign, lengths) for sign, lengths in evidence if lengths.size]
+    custom = CUSTOM if in_feet_and_inches else 0.0
+    total = custom + sum(sign.weight for sign, _ in known)
+    scores = dict.fromkeys(CANDIDATES, 0.0)
+    scores["in"] += custom / total
+    for sign, lengths in known:
+        for unit in scores:
+            scores[unit] += sign.weight * _share(sign, lengths, unit) / total
+    best, second, *_ = sorted(scores, key=scores.__getitem__, reverse=True)
+    if scores[best] < ENOUGH or scores[best] - scores[second] < LEAD:
+        return None
+    for_it = [sign.name for sign, lengths in known if _share(sign, lengths, best) >= ENOUGH]
+    against = frozenset(unit for unit in MM_PER_UNIT if _is_ruled_out(unit, known))
+    return Estimate(best, " and ".join(for_it), against - {best})
+
+
+def _is_ruled_out(unit: str, known: Sequence[tuple[Sign, FloatArray]]) -> bool:
+    """Whether two sorts of length, or one seen often, are out of range in a unit."""
+    seen = [
+        lengths.size
+        for sign, lengths in known
+        if 0 < sign.at_least <= lengths.size and _share(sign, lengths, unit) <= 1 - ENOUGH
+    ]
+    return len(seen) > 1 or any(count >= OFTEN for count in seen)
+
+
+def _share(sign: Sign, lengths: FloatArray, unit: str) -> float:
+    """Which share of the lengths falls into the range, were this their unit."""
+    lengths_mm = lengths * MM_PER_UNIT[unit]
+    return float(np.mean((sign.least_mm <= lengths_mm) & (lengths_mm <= sign.most_mm)))
+
+
+def _quarter_turns(
+    features: Sequence[tuple[Meaning | None, Feature]], *, of_doors: bool
+) -> FloatArray:
+    """Radii of arcs that turn by about 90°, as doors do, on door layers or on others."""
+    return np.array(
+        [
+            math.hypot(*piece.u)
+            for meaning, feature in features
+            if (meaning is Meaning.DOOR) == of_doors
+            for path in feature.paths
+            for piece in path.pieces
+            if isinstance(piece, Arc) and math.radians(60) <= piece.sweep_rad <= math.radians(120)
+        ]
+    )
+
+
+def _column_sizes(features: Sequence[tuple[Meaning | None, Feature]]) -> FloatArray:
+    """The shorter sides of closed shapes on column layers."""
+    sizes = []
+    for meaning, feature in features:
+        if meaning is Meaning.COLUMN:
+            sizes.extend(_shorter_side(path) for path in feature.paths if path.closed)
+    return np.array(sizes)
+
+
+def _shorter_side(path: Path) -> float:
+    first = path.pieces[0]
+    if isinstance(first, Arc) and first.is_full:
+        return 2 * min(math.hypot(*first.u), math.hypot(*first.v))
+    corners = np.array([piece.start for piece in path.pieces])
+    return float(np.ptp(corners, axis=0).min())
+
+
+def _wall_thicknesses(features: Sequence[tuple[Meaning | None, Feature]]) -> FloatArray:
+    """For each line of a wall, the distance to the nearest parallel one that runs beside it."""
+    lines = [
+        (piece.start, piece.end)
+        for meaning, feature in features
+        if meaning is Meaning.WALL
+        for path in feature.paths
+        for piece in path.pieces
+        if isinstance(piece, Line)
+    ]
+    if len(lines) < 2:
+        return np.array([])
+    lines.sort(key=lambda line: -math.dist(*line))
+    ends = np.array(lines[:MAX_LINES])
+    along = ends[:, 1] - ends[:, 0]
+    lengths = np.hypot(*along.T)
+    along /= lengths[:, np.newaxis]
+    middles = shapely.points(ends.mean(axis=1))
+    own, other = shapely.STRtree([LineString(line) for line in ends]).query(
+        middles, predicate="dwithin", distance=float(np.median(lengths))
+    )
+    sines = np.abs(along[own, 0] * along[other, 1] - along[own, 1] * along[other, 0])
+    offsets = ends[other, 0] - ends[own].mean(axis=1)
+    distances = np.abs(offsets[:, 0] * along[own, 1] - offsets[:, 1] * along[own, 0])
+    slim = (distances > 1e-3 * lengths[own]) & (distances < SLIM * lengths[own])
+    beside = (sines < 0.02) & slim
+    nearest = np.full(len(ends), np.inf)
+    np.minimum.at(nearest, own[beside], distances[beside])
+    return nearest[np.isfinite(nearest)]
+
+
+def _attributes(entities: Iterable[DXFEntity], names: dict[str, str]) -> FloatArray:
+    """Positive numbers that entities of some types carry."""
+    values = [
+        entity.dxf.get(names[entity.dxftype()], 0.0)
+        for entity in entities
+        if entity.dxftype() in names
+    ]
+    return np.array([value for value in values if math.isfinite(value) and value > 0])
