@@ -21,7 +21,7 @@ from ezdxf.lldxf.encoding import decode_dxf_unicode
 from PIL import Image
 from shapely.geometry import Polygon, box
 
-from satAOI_adapters import write_aoi
+from satAOI_adapters import read_plan, write_aoi
 from satAOI_adapters.dxf_write.legend import note_rows
 from satAOI_adapters.dxf_write.pen import begun_on_a_straight
 from satAOI_adapters.dxf_write.place import entity_bounds, free_place
@@ -219,15 +219,14 @@ def test_every_hatch_carries_facts(tmp_path: Path) -> None:
 # --- what is drawn around it -----------------------------------------------------------------
 
 
-def test_the_start_is_a_disc_with_a_point_at_its_centre(tmp_path: Path) -> None:
+def test_the_start_is_the_disc_with_a_cross(tmp_path: Path) -> None:
     result = results.furnished_result()
     entities = on_layer(written(result, tmp_path / "a.dxf"), "SATAOI-START")
-    assert Counter(e.dxftype() for e in entities) == {"CIRCLE": 1, "POINT": 1, "LWPOLYLINE": 2}
-    circle, point = entities[:2]
+    assert [entity.dxftype() for entity in entities] == ["CIRCLE", "LWPOLYLINE", "LWPOLYLINE"]
+    circle = entities[0]
     iy, ix = result.search.start.node
     assert circle.dxf.radius == result.robot.disc_radius_mm
     assert (circle.dxf.center.x, circle.dxf.center.y) == (25 * ix + 12.5, 25 * iy + 12.5)
-    assert point.dxf.location == circle.dxf.center
 
 
 def test_obstacles_are_drawn_as_they_were_read_with_kind_and_source(tmp_path: Path) -> None:
@@ -472,7 +471,7 @@ def test_layer_names_are_ascii(drawn: Result, tmp_path: Path) -> None:
 WRITE_TWO = """
 import pickle, sys
 from pathlib import Path
-from satAOI_adapters import write_aoi
+from satAOI_adapters import read_plan, write_aoi
 folder, *pickled = map(Path, sys.argv[1:])
 for number, path in enumerate(pickled):
     write_aoi(folder / f"{number}.dxf", pickle.loads(path.read_bytes()))
@@ -551,6 +550,14 @@ def test_a_floor_in_two_pieces_with_a_hole_is_three_outlines(tmp_path: Path) -> 
     )
     document = written(results.with_plan(results.furnished_result(), plan), tmp_path / "a.dxf")
     assert len(on_layer(document, "FLOOR")) == 3
+
+
+def test_the_output_read_again_gives_the_same_area_from_the_same_start(tmp_path: Path) -> None:
+    result = results.furnished_result()
+    write_aoi(tmp_path / "a.dxf", result)
+    again = area_of_interest(read_plan(tmp_path / "a.dxf"), settings=result.settings)
+    assert again.search.start.node == result.search.start.node
+    assert again.aoi.area_mm2 == pytest.approx(result.aoi.area_mm2, rel=1e-12)
 
 
 # --- other programs --------------------------------------------------------------------------

@@ -25,7 +25,6 @@ from satAOI_geo.report import Report
 MOST_FINDINGS: Final = 6
 """Sorts of findings that are listed."""
 
-
 WHY: Final = {
     Reason.DISC: "too narrow for the disc",
     Reason.ARM: "no room for the arm",
@@ -77,18 +76,20 @@ def note_rows(result: Result) -> list[Row]:
 def _area_rows(report: Report) -> list[Row]:
     aoi, disc = report.aoi, report.disc_connected
     area = f"{aoi.area_m2:.2f} m² = {aoi.percent_of_free:.1f} % of the free floor"
-    rows = [
+    more = Swatch(UPPER.colour, UPPER.lineweight, UPPER)
+    rule = (
+        [Row("Connectivity", "disc-connected, an upper estimate")]
+        if aoi.connectivity == "disc"
+        else [
+            Row("Connectivity", "pose-connected"),
+            Row("Upper estimate", f"{disc.area_m2:.2f} m², disc-connected", more),
+        ]
+    )
+    return [
         Row("Floor the robot can trowel"),
         Row("Area of interest", area, Swatch(EDGE.colour, EDGE.lineweight, AOI)),
         Row("Connected parts", str(aoi.n_parts)),
-    ]
-    if aoi.connectivity == "disc":
-        return [*rows, Row("Connectivity", "disc-connected, an upper estimate")]
-    more = Swatch(UPPER.colour, UPPER.lineweight, UPPER)
-    return [
-        *rows,
-        Row("Connectivity", "pose-connected"),
-        Row("Upper estimate", f"{disc.area_m2:.2f} m², disc-connected", more),
+        *rule,
         Row("Zones", f"{len(report.zones)}, on the frozen layer {ZONE.name}"),
         Row("Set-downs", f"{len(report.set_downs)} reach all that any pose can trowel"),
     ]

@@ -76,10 +76,6 @@ class Pen:
             centre, radius_mm / self.frame.mm_per_unit, dxfattribs=self._attributes()
         )
 
-    def point(self, at_mm: npt.ArrayLike) -> DXFGraphic:
-        """A point."""
-        return self.space.add_point(self.frame.to_drawing(at_mm), dxfattribs=self._attributes())
-
     def chain(self, points_mm: npt.ArrayLike) -> DXFGraphic:
         """An open polyline, or a closed one when it ends where it begins."""
         points_mm = np.asarray(points_mm, dtype=np.float64)[:, :2]

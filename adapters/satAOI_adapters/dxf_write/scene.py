@@ -101,13 +101,12 @@ def draw_zones(space: Modelspace, result: Result) -> None:
 
 
 def draw_start(space: Modelspace, result: Result) -> None:
-    """Draw the disc at the start, with a cross and a point at its centre."""
+    """Draw the disc at the start, a circle and a cross: read again, the circle marks the start."""
     lattice, pen = result.lattice, Pen(space, result.plan.frame, START.name)
     iy, ix = result.search.start.node
     x_mm, y_mm = lattice.x_mm(ix), lattice.y_mm(iy)
     radius_mm = result.robot.disc_radius_mm
     pen.circle((x_mm, y_mm), radius_mm)
-    pen.point((x_mm, y_mm))
     arm_mm = 1.25 * radius_mm
     pen.chain([(x_mm - arm_mm, y_mm), (x_mm + arm_mm, y_mm)])
     pen.chain([(x_mm, y_mm - arm_mm), (x_mm, y_mm + arm_mm)])
