@@ -9,12 +9,12 @@ from shapely.geometry import LineString, box
 
 from satAOI_geo.collision import Collider, Reference
 from satAOI_geo.discs import covered_cells
-from satAOI_geo.freespace import FreeSpace, free_space
+from satAOI_geo.freespace import FreeSpace, free_space, moves
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import Circle, FloorPlan
 from satAOI_geo.reach import DiscComponents, PoseComponents
-from satAOI_geo.robot import ROBOTS, Robot
+from satAOI_geo.robot import ROBOTS, Robot, unit
 from satAOI_geo.units import MM2_PER_M2
 from tests import drawn, plans
 from tests.oracle import Node, Oracle, State, flooded
@@ -93,6 +93,15 @@ ODD_ROBOTS = {
         swing_min_rad=-math.pi,
         swing_max_rad=math.pi,
     ),
+    # between two directions its arm sweeps floor that it covers in neither
+    "thin_arm": replace(
+        PROTOTYPE,
+        vehicle_length_mm=150.0,
+        vehicle_width_mm=120.0,
+        pivot_offset_mm=30.0,
+        arm_length_mm=600.0,
+        disc_radius_mm=25.0,
+    ),
     "stiff_arm": replace(PROTOTYPE, swing_min_rad=0.0, swing_max_rad=0.0),
     "arm_all_disc": replace(PROTOTYPE, arm_length_mm=350.0, vehicle_length_mm=300.0),
 }
@@ -103,7 +112,7 @@ ODD_ROBOTS = {
 def test_pose_connected_sets_of_odd_robots_are_those_of_the_slow_search(
     robot: Robot, seed: int
 ) -> None:
-    plan = plans.random_plan(seed, n_obstacles=4, side_mm=(2500, 3500))
+    plan = plans.random_plan(seed, n_obstacles=4, side_mm=(2300, 3000))
     lattice = Lattice.over(plan.floor.bounds, robot, step_mm=150.0, n_directions=8)
     assert_same_sets(plan, robot, lattice)
 
@@ -229,7 +238,8 @@ def test_wall_of_no_width_between_two_nodes_parts_them() -> None:
     assert left != right
 
 
-def test_pole_thinner_than_the_move_parts_the_poses_on_its_sides() -> None:
+@pytest.mark.parametrize("other", [(0, 1), (1, 0)], ids=["to_the_right", "up"])
+def test_pole_thinner_than_the_step_parts_the_nodes_on_its_sides(other: Node) -> None:
     # the disc of 20 mm steps 100 mm across a pole of 1 mm
     robot = replace(
         PROTOTYPE,
@@ -238,17 +248,60 @@ def test_pole_thinner_than_the_move_parts_the_poses_on_its_sides() -> None:
         pivot_offset_mm=0.0,
         arm_length_mm=60.0,
         disc_radius_mm=20.0,
+        swing_min_rad=0.0,
+        swing_max_rad=0.0,
     )
     floor = box(0, 0, 200, 200)
     lattice = Lattice.over(floor.bounds, robot, step_mm=100.0, n_directions=4)
+    pole = Circle(50 + 50.0 * other[1], 50 + 50.0 * other[0], 1.0)
+    a1 = 1 if other == (0, 1) else 0  # the arm across the step, clear of the pole
+    for plan, parted in ((drawn.plan_of(floor, pole), True), (drawn.plan_of(floor), False)):
+        _, poses = searched(plan, robot, lattice)
+        here, there = poses.at(0, 0, a1, 0), poses.at(*other, a1, 0)
+        assert here is not None
+        assert there is not None
+        assert (here != there) is parted
+
+
+@pytest.mark.parametrize(
+    ("distance_mm", "bearing_deg", "stopped"),
+    [
+        # The arm is 40 mm wide, its pivot 500 mm off; from there the vehicle, as wide, reaches
+        # another 600 mm. Each pole stands between two directions 15° apart, touching neither.
+        (300, 7.5, {"turn", "orbit"}),
+        # beyond what the vehicle sweeps about its pivot (605) and what it shifts along (149 up)
+        (1098, 9.0, {"turn"}),
+        (898, 3.33, {"turn", "orbit", "swing"}),
+        (1200, 7.5, set()),
+    ],
+)
+def test_pole_stops_the_moves_that_sweep_over_it(
+    distance_mm: float, bearing_deg: float, stopped: set[str]
+) -> None:
+    robot = Robot(
+        name="thin",
+        vehicle_length_mm=600.0,
+        vehicle_width_mm=40.0,
+        pivot_offset_mm=300.0,
+        arm_length_mm=500.0,
+        disc_radius_mm=20.0,
+    )
+    x_mm, y_mm = (distance_mm * part for part in unit(math.radians(bearing_deg)))
+    plan = drawn.plan_of(box(-2000, -2000, 2000, 2000), Circle(x_mm, y_mm, 1.0))
+    # one cell, its centre the origin
+    lattice = Lattice.over(plan.floor.bounds, robot, step_mm=4000.0)
+    engine = Intervals(plan, robot, lattice)
+    space = free_space(engine, robot, lattice)
     straight = lattice.swings.index(0)
-    _, apart = searched(drawn.plan_of(floor, Circle(100.0, 50.0, 1.0)), robot, lattice)
-    _, together = searched(drawn.plan_of(floor), robot, lattice)
-    for poses, parted in ((apart, True), (together, False)):
-        left, right = poses.at(0, 0, 1, straight), poses.at(0, 1, 1, straight)
-        assert left is not None
-        assert right is not None
-        assert (left != right) is parted
+    names = {(1, straight): "turn", (0, straight + 1): "swing", (1, straight - 1): "orbit"}
+    allowed = {
+        names[move.to_a1, move.to_swing]: bool(lattice.unpacked(move.allowed)[0, 0])
+        for move in moves(engine, robot, space, 0)
+        if move.swing == straight and move.rows_up == 0
+    }
+    assert all(space.is_free(0, 0, *pose) for pose in [(0, straight), *names])
+    assert {name for name, is_allowed in allowed.items() if not is_allowed} == stopped
+    assert set(allowed) == set(names.values())
 
 
 def test_floor_on_which_nothing_is_free_has_no_sets() -> None:
