@@ -22,7 +22,7 @@ from satAOI_adapters.dxf_write.document import base_document, file_bytes
 from satAOI_adapters.dxf_write.layers import add_layers
 from satAOI_adapters.dxf_write.metadata import add_appid, record_run
 from satAOI_adapters.dxf_write.note import draw_note
-from satAOI_adapters.dxf_write.place import floor_bounds, text_height
+from satAOI_adapters.dxf_write.place import entity_bounds, floor_bounds, text_height
 from satAOI_adapters.dxf_write.scene import (
     draw_area,
     draw_plan,
@@ -57,12 +57,14 @@ def write(path: Path, result: Result) -> None:
     add_layers(document)
     add_appid(document)
     space = document.modelspace()
+    # before anything is drawn into it: what comes on top lies within the plan
+    taken = entity_bounds(space)
     draw_plan(space, result)
     draw_zones(space, result)
     hatches = draw_area(space, result)
     hatches += draw_unreached(space, result, text_height(floor_bounds(result.plan)))
     draw_start(space, result)
-    draw_note(space, result)
+    draw_note(space, result, taken)
     send_to_back(document, hatches)
     record_run(document, result)
     data = file_bytes(document)

@@ -16,13 +16,12 @@ from satAOI_adapters.dxf_write.metadata import attach, one_line
 from satAOI_adapters.dxf_write.pen import Pen, outline_of
 from satAOI_adapters.dxf_write.place import (
     corners_of,
-    entity_bounds,
     floor_bounds,
     free_place,
     text_height,
 )
 from satAOI_geo.pipeline import Result
-from satAOI_geo.plan import Frame
+from satAOI_geo.plan import FloatArray, Frame
 
 # The layout, in text heights.
 ROW: Final = 1.9
@@ -42,8 +41,14 @@ LONGEST_VALUE: Final = 48
 """Characters of a value; a longer name of a file or of a robot is cut."""
 
 
-def draw_note(space: Modelspace, result: Result) -> None:
-    """Draw the note beside the plan, clear of everything that is drawn already."""
+def draw_note(space: Modelspace, result: Result, taken: FloatArray) -> None:
+    """Draw the note beside the plan.
+
+    Args:
+        space: Where to draw.
+        result: What to tell.
+        taken: Bounds of what to keep clear of, shape (n, 4), in drawing units.
+    """
     rows = note_rows(result)
     plan = floor_bounds(result.plan)
     height = text_height(plan)
@@ -53,7 +58,7 @@ def draw_note(space: Modelspace, result: Result) -> None:
         height * (width + 2 * MARGIN),
         height * (sum(_pitch(row) for row in rows) + 2 * MARGIN),
     )
-    within = free_place(plan, size, gap=GAP * height, taken=entity_bounds(space))
+    within = free_place(plan, size, gap=GAP * height, taken=taken)
     Pen(space, Frame(), NOTE.name).ring(corners_of(within))
     x, y = within[0] + MARGIN * height, within[3] - MARGIN * height
     for row in rows:
