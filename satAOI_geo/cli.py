@@ -17,6 +17,8 @@ from satAOI_geo.errors import DrawingError, InputError, LimitError, SatAoiError,
 from satAOI_geo.options import (
     AT,
     EXACT_OUTLINE,
+    ONLY_DXF,
+    ONLY_IFC,
     OUTPUTS,
     PLAN,
     QUESTION,
@@ -31,6 +33,8 @@ from satAOI_geo.options import (
 
 if TYPE_CHECKING:
     from satAOI_geo.pipeline import Result
+    from satAOI_geo.plan import FloorPlan
+    from satAOI_geo.search import Settings
 
 DONE: Final = 0
 FINDINGS: Final = 1
@@ -44,6 +48,7 @@ EXIT_CODES: Final[dict[type[SatAoiError], int]] = {
 }
 
 STANDARD_OUTPUT: Final = Path("-")
+IFC: Final = ".ifc"
 
 EPILOG: Final = (
     "Exit codes: 0 done; 1 findings, with --strict; 2 usage; 3 drawing unusable; "
@@ -101,50 +106,35 @@ def commands() -> None:
     """
 
 
+class PlanOptions(Reading, Question):
+    """All that concerns a plan and what is asked about it."""
+
+
+class RunOptions(PlanOptions, Outputs):
+    """All that `run` can be asked."""
+
+    exact_outline: bool
+    strict: bool
+
+
 @commands.command(epilog=EPILOG)
 @taking(PLAN, OUTPUTS, EXACT_OUTLINE, READING, QUESTION, STRICT, QUIET)
-def run(
-    *,
-    plan: Path,
-    output: Path | None,
-    report: Path | None,
-    raster: Path | None,
-    exact_outline: bool,
-    units: str | None,
-    layers: Path | None,
-    strict: bool,
-    quiet: bool,
-    **question: Unpack[Question],
-) -> int:
-    """Find the area of interest on a floor plan.
+def run(*, plan: Path, quiet: bool, **options: Unpack[RunOptions]) -> int:
+    """Find the area of interest on a floor plan (DXF or IFC).
 
     Without --output, --report and --raster the figures are printed and nothing is written.
     """
-    outputs = Outputs(output=output, report=report, raster=raster)
-    read = [path for path in (plan, Path(question["robot"]), layers) if path is not None]
-    refuse_early(outputs, read)
-    result = answer(
-        plan,
-        Reading(units=units, layers=layers),
-        question,
-        exact_outline=exact_outline,
-        quiet=quiet,
-    )
-    write(result, outputs)
-    tell(result, outputs, quiet=quiet)
-    return FINDINGS if strict and result.report.findings else DONE
+    refuse_early(options, read=[plan, Path(options["robot"]), options["layers"]])
+    result = answer(plan, options, exact_outline=options["exact_outline"], quiet=quiet)
+    write(result, options)
+    tell(result, options, quiet=quiet)
+    return FINDINGS if options["strict"] and result.report.findings else DONE
 
 
 @commands.command()
 @taking(PLAN, AT, READING, QUESTION, QUIET)
 def explain(
-    *,
-    plan: Path,
-    at: tuple[float, float],
-    units: str | None,
-    layers: Path | None,
-    quiet: bool,
-    **question: Unpack[Question],
+    *, plan: Path, at: tuple[float, float], quiet: bool, **options: Unpack[PlanOptions]
 ) -> int:
     """Say in one sentence why a point is, or is not, in the area of interest.
 
@@ -152,34 +142,48 @@ def explain(
     """
     from satAOI_geo.explain import explain as sentence_for
 
-    result = answer(plan, Reading(units=units, layers=layers), question, quiet=quiet)
+    result = answer(plan, options, quiet=quiet)
     x_mm, y_mm = result.plan.frame.to_local_mm(at).tolist()
     click.echo(sentence_for(result, (x_mm, y_mm)))
     return DONE
 
 
 def answer(
-    plan: Path,
-    reading: Reading,
-    question: Question,
-    *,
-    exact_outline: bool = False,
-    quiet: bool,
+    path: Path, options: PlanOptions, *, exact_outline: bool = False, quiet: bool
 ) -> "Result":
     """Read a plan and find the area of interest on it."""
-    from satAOI_adapters import kernel_cache, read_plan
-    from satAOI_adapters.dxf_read import ReadOptions
+    from satAOI_adapters import kernel_cache
     from satAOI_adapters.robot_read import robot_from
     from satAOI_adapters.terminal import progress, say_note
 
     compiled = kernel_cache.prepare()
     from satAOI_geo.pipeline import area_of_interest
-    from satAOI_geo.search import Settings
     from satAOI_geo.start import StartMark
 
-    robot = robot_from(question["robot"])
+    # what is cheap to refuse comes first
+    robot = robot_from(options["robot"])
+    settings = settings_of(options, exact_outline=exact_outline)
+    plan = read(path, options)
+    mark = None
+    if options["start"] is not None:
+        x_mm, y_mm = plan.frame.to_local_mm(options["start"]).tolist()
+        mark = StartMark((x_mm, y_mm))
+    if not (compiled or quiet):
+        say_note("first run of this version: compiling takes some seconds, once")
+    with progress(quiet=quiet) as told:
+        return area_of_interest(plan, robot, settings, start=mark, progress=told)
+
+
+def settings_of(question: Question, *, exact_outline: bool) -> "Settings":
+    """The settings that a question amounts to.
+
+    Raises:
+        InputError: If one is out of range.
+    """
+    from satAOI_geo.search import Settings
+
     align_deg = question["align"]
-    settings = Settings(
+    return Settings(
         connectivity=question["connectivity"],
         step_mm=question["step"],
         n_directions=question["directions"],
@@ -188,18 +192,53 @@ def answer(
         engine=question["engine"],
         exact_outline=exact_outline,
     )
-    floor_plan = read_plan(plan, ReadOptions(**reading))
-    mark = None
-    if question["start"] is not None:
-        x_mm, y_mm = floor_plan.frame.to_local_mm(question["start"]).tolist()
-        mark = StartMark((x_mm, y_mm))
-    if not (compiled or quiet):
-        say_note("first run of this version: compiling takes some seconds, once")
-    with progress(quiet=quiet) as told:
-        return area_of_interest(floor_plan, robot, settings, start=mark, progress=told)
 
 
-def refuse_early(outputs: Outputs, read: list[Path]) -> None:
+def read(path: Path, options: Reading) -> "FloorPlan":
+    """Read a plan as the options say."""
+    from satAOI_adapters import read_plan
+
+    refuse_options_of_other_formats(path, options)
+    if path.suffix.lower() == IFC:
+        from satAOI_adapters.ifc_read.options import BAND_MM, IfcOptions
+
+        ifc = IfcOptions(
+            units=options["units"],
+            storey=options["storey"],
+            floor_z=options["floor_z"],
+            band_mm=BAND_MM if options["band"] is None else options["band"],
+        )
+        return read_plan(path, ifc=ifc)
+    from satAOI_adapters.dxf_read import ReadOptions
+
+    dxf = ReadOptions(
+        units=options["units"],
+        layers=options["layers"],
+        encoding=options["encoding"],
+        include_hidden=options["include_hidden"],
+    )
+    return read_plan(path, dxf=dxf)
+
+
+def refuse_options_of_other_formats(path: Path, options: Reading) -> None:
+    """Refuse what would say nothing about a plan of this format.
+
+    Raises:
+        InputError: If an option was given that belongs to another format.
+    """
+    is_ifc = path.suffix.lower() == IFC
+    foreign = ONLY_DXF if is_ifc else ONLY_IFC
+    given = [
+        name
+        for name, value in options.items()
+        if name in foreign and not (value is None or value is False)
+    ]
+    if given:
+        option, format_name = f"--{given[0].replace('_', '-')}", "IFC" if is_ifc else "DXF"
+        raise InputError(f"{option} says nothing about a plan in {format_name}; leave it out")
+
+
+def refuse_early(outputs: Outputs, read: list[Path | None]) -> None:
     """Refuse outputs that could not be written, before any work is done for them.
 
     Raises:
@@ -214,16 +253,21 @@ def refuse_early(outputs: Outputs, read: list[Path]) -> None:
             writer_of(path)
     seen: list[Path] = []
     for path in files_of(outputs):
-        refuse_unfit_target(path, read)
+        refuse_unfit_target(path, [one for one in read if one is not None])
         if path.absolute() in seen:
             raise InputError(f"'{path}' is asked for twice; give each output a name of its own")
         seen.append(path.absolute())
 
 
+def asked_for(outputs: Outputs) -> list[Path]:
+    """The outputs that are asked for."""
+    all_of_them = (outputs["output"], outputs["report"], outputs["raster"])
+    return [path for path in all_of_them if path is not None]
+
+
 def files_of(outputs: Outputs) -> list[Path]:
     """The files to be written."""
-    asked = (outputs["output"], outputs["report"], outputs["raster"])
-    return [path for path in asked if path not in {None, STANDARD_OUTPUT}]
+    return [path for path in asked_for(outputs) if path != STANDARD_OUTPUT]
 
 
 def write(result: "Result", outputs: Outputs) -> None:
@@ -247,7 +291,7 @@ def tell(result: "Result", outputs: Outputs, *, quiet: bool) -> None:
     from satAOI_adapters.report_write import lines_of
     from satAOI_adapters.terminal import say_findings, say_note, write_table
 
-    alone = not any(outputs.values())
+    alone = not asked_for(outputs)
     if alone:
         write_table(lines_of(result.report), sys.stdout)
     if quiet:

@@ -95,28 +95,70 @@ OUTPUTS: Final[Group] = (
 
 
 class Reading(TypedDict):
-    """How the drawing is read."""
+    """How the plan is read; None where nothing is said."""
 
     units: str | None
     layers: Path | None
+    encoding: str | None
+    include_hidden: bool
+    storey: str | None
+    floor_z: float | None
+    band: float | None
 
+
+ONLY_DXF: Final = ("layers", "encoding", "include_hidden")
+ONLY_IFC: Final = ("storey", "floor_z", "band")
 
 READING: Final[Group] = (
     click.option(
         "--units",
         metavar="UNIT",
         type=click.Choice(list(MM_PER_UNIT)),
-        panel="The drawing",
-        help="The drawing's unit of length, whatever its header says, e.g. --units mm; "
+        panel="The plan",
+        help="The plan's unit of length, whatever the file says, e.g. --units mm; "
         f"one of {', '.join(MM_PER_UNIT)}.",
     ),
     click.option(
         "--layers",
         metavar="FILE.toml",
         type=FILE,
-        panel="The drawing",
-        help="Which layers are walls, columns, floor and so on, e.g. --layers office.toml; "
+        panel="The plan",
+        help="DXF: which layers are walls, columns, floor and so on, e.g. --layers office.toml; "
         "satAOI-geo inspect tells how they are read.",
+    ),
+    click.option(
+        "--encoding",
+        metavar="NAME",
+        panel="The plan",
+        help="DXF: encoding of the names in the file, whatever it declares, e.g. --encoding cp1251",
+    ),
+    click.option(
+        "--include-hidden",
+        is_flag=True,
+        panel="The plan",
+        help="DXF: read layers that are frozen or switched off, too.",
+    ),
+    click.option(
+        "--storey",
+        metavar="NAME|N",
+        panel="The plan",
+        help="IFC: the storey by its name, or by its number with 1 for the lowest, e.g. --storey 2",
+    ),
+    click.option(
+        "--floor-z",
+        metavar="Z",
+        type=float,
+        panel="The plan",
+        help="IFC: height of the finished floor in the model's unit, e.g. --floor-z 3.25",
+    ),
+    click.option(
+        "--band",
+        metavar="MM",
+        type=float,
+        show_default="1200",
+        panel="The plan",
+        help="IFC: what begins higher than this above the floor is out of the robot's way, "
+        "e.g. --band 900",
     ),
 )
 

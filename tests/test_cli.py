@@ -190,6 +190,8 @@ def test_strict_tells_findings_by_its_exit_code(
         (["--step", "ten"], 2, "'ten' is not a valid float"),
         (["--directions", "7"], 2, "multiple of 4"),
         (["--clearance", "-1"], 2, "clearance"),
+        (["--storey", "2"], 2, "--storey says nothing about a plan in DXF"),
+        (["--floor-z", "0"], 2, "--floor-z says nothing about a plan in DXF"),
         (["--units", "parsec"], 2, "'parsec' is not one of"),
         (["--robot", "r2d2"], 2, "no robot 'r2d2'"),
         (["--layers", "none.toml"], 2, "none.toml"),
@@ -250,7 +252,8 @@ def test_a_file_that_is_no_drawing_is_one_line_and_an_exit_code(
 def test_a_drawing_without_a_unit_says_which_option_supplies_it(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    plan = drawn_room(tmp_path / "room.dxf", insunits=0)
+    # 400 units may be 4 m in cm, or as well 10 m in inches
+    plan = drawn_room(tmp_path / "room.dxf", insunits=0, unit_mm=10)
     assert main([str(plan), "--quiet"]) == 3
     assert "--units" in the_error(capsys)
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import satAOI_geo
+from satAOI_geo.cli import EXIT_CODES, commands
 
 ROOT = Path(__file__).parents[1]
 CORE = ROOT / "satAOI_geo"
@@ -112,8 +113,6 @@ def test_the_continuous_check_runs_the_test_command_of_the_readme() -> None:
 
 
 def test_the_readme_names_every_option_and_every_exit_code() -> None:
-    from satAOI_geo.cli import EXIT_CODES, commands
-
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     options = {
         opt for command in commands.commands.values() for p in command.params for opt in p.opts
@@ -121,6 +120,24 @@ def test_the_readme_names_every_option_and_every_exit_code() -> None:
     assert {opt for opt in options if opt.startswith("--") and f"`{opt}" not in readme} == set()
     for code in {0, 1, 130, *EXIT_CODES.values()}:
         assert re.search(rf"^\| {code} \|", readme, re.MULTILINE)
+
+
+def test_every_option_that_a_message_names_is_there() -> None:
+    sources = [*CORE.glob("*.py"), *(ROOT / "adapters").rglob("*.py")]
+    texts = {
+        node.value
+        for source in sources
+        for node in ast.walk(ast.parse(source.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    }
+    named = {option for text in texts for option in re.findall(r"--[a-z][a-z-]+", text)}
+    own = {
+        option
+        for command in commands.commands.values()
+        for p in command.params
+        for option in p.opts
+    }
+    assert named - own - {"--help", "--version"} == set()
 
 
 def test_the_changelog_has_the_version_on_top() -> None:

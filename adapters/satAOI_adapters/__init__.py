@@ -5,40 +5,58 @@ A new format is one module and one line in `READERS` or `WRITERS`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, TypeAlias, TypeVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias, TypeVar
 
 from satAOI_geo.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from satAOI_adapters.dxf_read import ReadOptions
+    from satAOI_adapters.ifc_read import IfcOptions
     from satAOI_geo.pipeline import Result
     from satAOI_geo.plan import FloorPlan
 
-    Reader: TypeAlias = Callable[[Path, ReadOptions], FloorPlan]
+    Reader: TypeAlias = Callable[[Path, "Choices"], FloorPlan]
     Writer: TypeAlias = Callable[[Path, Result], None]
 
 __all__ = ["READERS", "WRITERS", "read_plan", "write_aoi", "writer_of"]
 
 
-def read_plan(path: Path, options: ReadOptions) -> FloorPlan:
+class Choices(NamedTuple):
+    """How files are to be read, by format; None for the defaults."""
+
+    dxf: ReadOptions | None
+    ifc: IfcOptions | None
+
+
+def read_plan(
+    path: Path | str, dxf: ReadOptions | None = None, ifc: IfcOptions | None = None
+) -> FloorPlan:
     """Read a floor plan from a file of any known format.
 
+    Args:
+        path: The file; its suffix tells the format.
+        dxf: How a DXF drawing is read, if it is one.
+        ifc: How an IFC model is read, if it is one.
+
     Raises:
-        InputError: If no reader knows the file's suffix.
+        InputError: If no reader knows the file's suffix, or an option is wrong.
         DrawingError: If the drawing cannot be used as it is.
+        LimitError: If it asks for more than the reader's limits allow.
     """
-    return _by_suffix(READERS, path, "read")(path, options)
+    path = Path(path)
+    return _by_suffix(READERS, path, "read")(path, Choices(dxf, ifc))
 
 
-def write_aoi(path: Path, result: Result) -> None:
+def write_aoi(path: Path | str, result: Result) -> None:
     """Write an area of interest to a file of any known format.
 
     Raises:
         InputError: If no writer knows the file's suffix, or the file cannot be written.
     """
+    path = Path(path)
     writer_of(path)(path, result)
 
 
@@ -51,16 +69,16 @@ def writer_of(path: Path) -> Writer:
     return _by_suffix(WRITERS, path, "write")
 
 
-def _read_dxf(path: Path, options: ReadOptions) -> FloorPlan:
+def _read_dxf(path: Path, choices: Choices) -> FloorPlan:
     from satAOI_adapters import dxf_read
 
-    return dxf_read.read(path, options)
+    return dxf_read.read(path, choices.dxf or dxf_read.ReadOptions())
 
 
-def _read_ifc(path: Path, options: ReadOptions) -> FloorPlan:
+def _read_ifc(path: Path, choices: Choices) -> FloorPlan:
     from satAOI_adapters import ifc_read
 
-    return ifc_read.read(path, ifc_read.IfcOptions(units=options.units))
+    return ifc_read.read(path, choices.ifc or ifc_read.IfcOptions())
 
 
 def _write_dxf(path: Path, result: Result) -> None:
