@@ -13,10 +13,10 @@ import numpy as np
 import shapely
 from shapely.geometry import Polygon
 
-from satAOI_geo.discs import Arcs, IntArray, boundary, covered_cells
+from satAOI_geo.discs import Arcs, boundary, covered_cells
 from satAOI_geo.errors import InputError
 from satAOI_geo.lattice import Lattice
-from satAOI_geo.plan import BoolArray, FloatArray
+from satAOI_geo.plan import BoolArray, FloatArray, IntArray
 
 CLEAN_MM = 0.05
 """How far inside the exact outline the clean one may run: far less than a drawing can show."""

@@ -17,6 +17,7 @@ from satAOI_geo.errors import DrawingError, InputError, LimitError, SatAoiError,
 from satAOI_geo.options import (
     AT,
     EXACT_OUTLINE,
+    JSON,
     ONLY_DXF,
     ONLY_IFC,
     OUTPUTS,
@@ -32,6 +33,7 @@ from satAOI_geo.options import (
 )
 
 if TYPE_CHECKING:
+    from satAOI_adapters import Choices
     from satAOI_geo.pipeline import Result
     from satAOI_geo.plan import FloorPlan
     from satAOI_geo.search import Settings
@@ -198,6 +200,17 @@ def read(path: Path, options: Reading) -> "FloorPlan":
     """Read a plan as the options say."""
     from satAOI_adapters import read_plan
 
+    return read_plan(path, *choices(path, options))
+
+
+def choices(path: Path, options: Reading) -> "Choices":
+    """What the options say to the reader of the plan's format.
+
+    Raises:
+        InputError: If an option was given that belongs to another format.
+    """
+    from satAOI_adapters import Choices
+
     refuse_options_of_other_formats(path, options)
     if path.suffix.lower() == IFC:
         from satAOI_adapters.ifc_read.options import BAND_MM, IfcOptions
@@ -208,8 +221,8 @@ def read(path: Path, options: Reading) -> "FloorPlan":
             floor_z=options["floor_z"],
             band_mm=BAND_MM if options["band"] is None else options["band"],
         )
-        return read_plan(path, ifc=ifc)
-    from satAOI_adapters.dxf_read import ReadOptions
+        return Choices(ifc=ifc)
+    from satAOI_adapters.dxf_read.options import ReadOptions
 
     dxf = ReadOptions(
         units=options["units"],
@@ -217,7 +230,7 @@ def read(path: Path, options: Reading) -> "FloorPlan":
         encoding=options["encoding"],
         include_hidden=options["include_hidden"],
     )
-    return read_plan(path, dxf=dxf)
+    return Choices(dxf=dxf)
 
 
 def refuse_options_of_other_formats(path: Path, options: Reading) -> None:
@@ -318,6 +331,27 @@ def demo(context: click.Context, **outputs: Unpack[Outputs]) -> int:
     with as_file(files("satAOI_adapters") / "demo" / "hall_medium.dxf") as plan:
         code: int = context.invoke(run, plan=plan, **outputs)
     return code
+
+
+@commands.command()
+@taking(PLAN, READING, JSON)
+def inspect(*, plan: Path, json: bool, **options: Unpack[Reading]) -> int:
+    """Tell how a plan is read: unit, size, layers or storeys, and what is odd about it.
+
+    satAOI-geo inspect plan.dxf
+    """
+    from satAOI_adapters import inspect_plan, inspect_write
+    from satAOI_adapters.terminal import say_findings, write_table
+
+    inspection = inspect_plan(plan, *choices(plan, options))
+    if json:
+        click.echo(inspect_write.json_of(inspection), nl=False)
+        return DONE
+    for number, table in enumerate(inspect_write.tables_of(inspection)):
+        click.echo("\n" * min(number, 1), nl=False)
+        write_table(table, sys.stdout)
+    say_findings(inspection.findings)
+    return DONE
 
 
 @commands.command()

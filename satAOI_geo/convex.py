@@ -9,7 +9,7 @@ from typing import Final, TypeAlias
 
 import numpy as np
 import shapely
-from shapely.geometry import Polygon
+from shapely.geometry import Polygon, box
 
 from satAOI_geo.plan import FloatArray, polygons_in
 
@@ -27,10 +27,9 @@ def convex_pieces(polygon: Polygon) -> list[FloatArray]:
     Returns:
         The corners of each piece, shape (n, 2), counter-clockwise, the first not repeated.
     """
-    triangles = polygons_in([shapely.constrained_delaunay_triangles(polygon)])
     rings = [
         [(x, y) for x, y, *_ in shapely.orient_polygons(triangle).exterior.coords[:-1]]
-        for triangle in triangles
+        for triangle in _triangles(polygon)
     ]
     # a piece lives at the number of one of its triangles; the others lead to it
     pieces: list[list[Point]] = rings
@@ -50,6 +49,26 @@ def convex_pieces(polygon: Polygon) -> list[FloatArray]:
             pieces[a] = merged
             joined_to[b] = a
     return [np.array(pieces[k]) for k, to in enumerate(joined_to) if k == to]
+
+
+def _triangles(polygon: Polygon) -> list[Polygon]:
+    """The triangles of a polygon.
+
+    Where GEOS cannot join a hole to the outside ("unable to find shell join index"), the polygon
+    is cut across its longer side and each half tried by itself.
+    """
+    try:
+        return polygons_in([shapely.constrained_delaunay_triangles(polygon)])
+    except shapely.GEOSException:
+        left, bottom, right, top = polygon.bounds
+        x_mm, y_mm = (left + right) / 2, (bottom + top) / 2
+        boxes = (
+            [(left, bottom, x_mm, top), (x_mm, bottom, right, top)]
+            if right - left > top - bottom
+            else [(left, bottom, right, y_mm), (left, y_mm, right, top)]
+        )
+        halves = polygons_in([polygon.intersection(box(*bounds)) for bounds in boxes])
+        return [triangle for half in halves for triangle in _triangles(half)]
 
 
 def _found(joined_to: list[int], number: int) -> int:

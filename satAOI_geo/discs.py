@@ -13,18 +13,14 @@ triple 21, 28, 35 alone puts dozens of circles through one point, and discs 70 s
 
 import math
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numba
 import numpy as np
-import numpy.typing as npt
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from satAOI_geo.plan import BoolArray, FloatArray
-
-IntArray: TypeAlias = npt.NDArray[np.int64]
+from satAOI_geo.plan import BoolArray, FloatArray, IntArray
 
 TIE = 1e-12
 """Share of a squared radius within which a squared distance counts as equal to it: far more than

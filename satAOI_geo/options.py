@@ -266,6 +266,8 @@ STRICT: Final[Group] = (
 
 QUIET: Final[Group] = (click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors."),)
 
+JSON: Final[Group] = (click.option("--json", is_flag=True, help="Write JSON rather than tables."),)
+
 AT: Final[Group] = (
     click.option(
         "--at",

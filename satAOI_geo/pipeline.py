@@ -89,13 +89,13 @@ def area_of_interest(
             "disc": found.disc.nodes(found.start.disc_label),
             "pose": found.pose.nodes(found.start.pose_label),
         }
+        exact = settings.exact_outline
         areas = {
-            rule: area(reached, lattice, disc_mm, exact=settings.exact_outline)
-            for rule, reached in nodes.items()
+            rule: area(reached, lattice, disc_mm, exact=exact) for rule, reached in nodes.items()
         }
     with watch.stage("zones"):
         all_zones = tuple(zones(found.pose, lattice, disc_mm))
-        enough = tuple(set_downs(found.pose, lattice, disc_mm))
+        enough = tuple(set_downs(found.pose, found.free, lattice, disc_mm))
     with watch.stage("reasons"):
         disc_fits, arm_fits = fitting_nodes(found.engine, robot, lattice)
         wider = {

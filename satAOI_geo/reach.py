@@ -12,7 +12,7 @@ not bounded.
 from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Lock
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +23,8 @@ from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.robot import Robot
 from satAOI_geo.runs import Runs, SliceRuns, links, paint, roots, unite
+
+EVERYTHING: Final = slice(None)
 
 
 class State(NamedTuple):
@@ -59,9 +61,9 @@ class DiscComponents:
         label = int(self.labels[iy, ix])
         return [] if label < 0 else [label]
 
-    def nodes(self, label: int) -> BoolArray:
-        """The nodes of one set, shape (n_rows, n_columns)."""
-        nodes: BoolArray = self.labels == label
+    def nodes(self, label: int, rows: slice = EVERYTHING, columns: slice = EVERYTHING) -> BoolArray:
+        """The nodes of one set, shape (n_rows, n_columns) or that of a window."""
+        nodes: BoolArray = self.labels[rows, columns] == label
         return nodes
 
 
@@ -140,35 +142,35 @@ class PoseComponents:
 
     def at(self, iy: int, ix: int, a1: int, swing: int) -> int | None:
         """The set that holds a state, or None when the state is not free."""
-        run = self.runs.holding(iy, ix, a1, swing)
+        run = self.runs.holding(iy, ix)[a1, swing]
         return None if run < 0 else int(self.labels[run])
 
     def at_node(self, iy: int, ix: int) -> list[int]:
         """The sets that hold some pose at a node, ascending."""
-        poses = np.ndindex(*self.runs.first.shape[:2])
-        found = {self.at(iy, ix, a1, swing) for a1, swing in poses}
-        return sorted(label for label in found if label is not None)
+        runs = self.runs.holding(iy, ix)
+        return [int(label) for label in np.unique(self.labels[runs[runs >= 0]])]
 
     def straightest(self, iy: int, ix: int, label: int) -> State:
         """The state of a set at one of its nodes whose arm is straightest behind the vehicle."""
-        turns = self.lattice.swings
-        straight_first = sorted(range(len(turns)), key=lambda swing: (abs(turns[swing]), swing))
-        return next(
-            State(iy, ix, a1, swing)
-            for swing in straight_first
-            for a1 in range(self.lattice.n_directions)
-            if self.at(iy, ix, a1, swing) == label
-        )
+        runs = self.runs.holding(iy, ix)
+        a1, swing = np.nonzero((runs >= 0) & (self.labels[runs] == label))
+        bend = np.abs(self.lattice.swings)[swing]
+        best = np.lexsort((a1, swing, bend))[0]
+        return State(iy, ix, int(a1[best]), int(swing[best]))
 
     def runs_of(self, label: int) -> npt.NDArray[np.int64]:
         """The numbers of the runs of one set."""
         return self.members[self.first[label] : self.first[label + 1]]
 
-    def nodes(self, label: int) -> BoolArray:
-        """The nodes at which the set has some pose, shape (n_rows, n_columns)."""
-        words = self.lattice.no_nodes()
-        paint(words, self.runs, self.runs_of(label))
-        return self.lattice.unpacked(words)
+    def nodes(self, label: int, rows: slice = EVERYTHING, columns: slice = EVERYTHING) -> BoolArray:
+        """The nodes at which the set has some pose, shape (n_rows, n_columns) or that of a window.
+
+        A window of rows must hold the whole set.
+        """
+        begin, end, _ = rows.indices(self.lattice.n_rows)
+        words = self.lattice.no_nodes()[begin:end]
+        paint(words, self.runs, self.runs_of(label), begin)
+        return self.lattice.unpacked(words)[:, columns]
 
 
 def links_of(runs: Runs, move: Move) -> npt.NDArray[np.int32]:

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import reduce
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -20,7 +21,7 @@ import shapely
 from shapely.geometry import MultiPolygon, Point, Polygon
 
 from satAOI_geo.aoi import Aoi, area
-from satAOI_geo.freespace import Engine
+from satAOI_geo.freespace import Engine, run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray, FloorPlan, Obstacle, Region, as_region, polygons_in
 from satAOI_geo.robot import Robot
@@ -107,10 +108,9 @@ def unreached(
         than a cell are gathered in one patch at the end.
     """
     rest = as_region(plan.free_region().difference(_region(aoi)))
-    covered = {
-        reason: _region(area(nodes, lattice, robot.disc_radius_mm))
-        for reason, nodes in wider.items()
-    }
+    sets = list(wider.values())
+    areas = run_threads(lambda k: area(sets[k], lattice, robot.disc_radius_mm), len(sets))
+    covered = {reason: _region(one) for reason, one in zip(wider, areas, strict=True)}
     blockers = _Blockers(plan)
     broad = _opened(rest, NARROW_CELLS * lattice.step_mm)
     pieces = [
@@ -136,13 +136,19 @@ def _split(
     Outlines of nested areas run along each other, a rounding apart: pieces narrower than a cell
     go to the reason that most of the part has.
     """
-    rest: Region = part
     by_reason: dict[Reason, Region] = {}
-    for reason in reversed(Reason):
-        if reason in covered:
-            by_reason[reason] = as_region(rest.intersection(covered[reason]))
-            rest = as_region(rest.difference(covered[reason]))
-    by_reason[Reason.DISC] = rest
+    inside: Region = part
+    for reason, next_reason in pairwise(Reason):
+        # each area holds the next: where one is met by rounding only, so are all after it
+        near = _clipped(covered[next_reason], part)
+        still = as_region(inside.intersection(near))
+        if still.area < step_mm**2:
+            by_reason[reason] = inside
+            break
+        by_reason[reason] = as_region(inside.difference(near))
+        inside = still
+    else:
+        by_reason[Reason.PATH] = inside
     most = max(by_reason, key=lambda reason: by_reason[reason].area)
     others = [
         (reason, piece)
@@ -182,8 +188,16 @@ class _Blockers:
 
 def _region(aoi: Aoi) -> Region:
     """The area as polygons of its own size."""
-    parts = [outline.equal_area_polygon(SAGITTA_MM) for outline in aoi.outlines]
-    return as_region(shapely.union_all(parts)) if parts else MultiPolygon()
+    parts = MultiPolygon([outline.equal_area_polygon(SAGITTA_MM) for outline in aoi.outlines])
+    # parts that touch may overlap by a rounding once their arcs are polygons
+    return parts if parts.is_valid else as_region(shapely.union_all(parts.geoms))
+
+
+def _clipped(region: Region, part: Polygon) -> Region:
+    """A region as far as a part can meet it: overlays of the whole would cost its whole length."""
+    left, bottom, right, top = part.bounds
+    near = shapely.clip_by_rect(region, left - 1.0, bottom - 1.0, right + 1.0, top + 1.0)
+    return as_region(near if near.is_valid else shapely.make_valid(near))
 
 
 def _opened(region: Region, width_mm: float) -> Region:

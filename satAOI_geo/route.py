@@ -70,7 +70,8 @@ class RouteMap:
             (np.ones(first.size, dtype=np.bool_), (pairs[first, 0], pairs[first, 1])),
             shape=(n_runs, n_runs),
         )
-        start_run = found.pose.runs.holding(*found.start.state)
+        iy, ix, a1, swing = found.start.state
+        start_run = found.pose.runs.holding(iy, ix)[a1, swing]
         self._start = int(np.searchsorted(self._runs, start_run))
         order, self._before = breadth_first_order(graph, self._start, directed=True)
         self._rank = np.empty(n_runs, dtype=np.int64)

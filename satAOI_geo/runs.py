@@ -50,11 +50,11 @@ class Runs:
             np.concatenate([one.end for one in flat]),
         )
 
-    def holding(self, iy: int, ix: int, a1: int, swing: int) -> int:
-        """The run that holds a state, or -1 when the state is not free."""
-        low, high = self.first[a1, swing, iy], self.first[a1, swing, iy + 1]
-        run = int(low + np.searchsorted(self.begin[low:high], ix, side="right")) - 1
-        return run if run >= low and ix <= self.end[run] else -1
+    def holding(self, iy: int, ix: int) -> IntArray:
+        """The run that holds each pose at a node, or -1; shape (n_directions, n_swings)."""
+        found = np.empty(self.first.shape[:2], dtype=np.int64)
+        _holding(self.first, self.begin, self.end, iy, ix, found)
+        return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,9 +110,12 @@ def roots(parents: Int32Array) -> Int32Array:
     return parents
 
 
-def paint(words: Words, runs: Runs, chosen: IntArray) -> None:
-    """Set the bits of all nodes of the chosen runs, given by number, at whatever pose."""
-    _paint(words, runs.row[chosen], runs.begin[chosen], runs.end[chosen])
+def paint(words: Words, runs: Runs, chosen: IntArray, first_row: int) -> None:
+    """Set the bits of all nodes of the chosen runs, given by number, at whatever pose.
+
+    The first row of words stands for row `first_row` of the lattice.
+    """
+    _paint(words, runs.row[chosen] - first_row, runs.begin[chosen], runs.end[chosen])
 
 
 @numba.njit(nogil=True, cache=True)
@@ -202,6 +205,18 @@ def _flatten(parents: Int32Array) -> None:
     """Make every run point at its root; roots are the lowest of their component."""
     for run in range(parents.size):
         parents[run] = parents[parents[run]]
+
+
+@numba.njit(nogil=True, cache=True)
+def _holding(
+    first: IntArray, begin: Int32Array, end: Int32Array, iy: int, ix: int, found: IntArray
+) -> None:
+    """Write the run that holds each pose at a node, or -1."""
+    for a1 in range(found.shape[0]):
+        for swing in range(found.shape[1]):
+            low, high = first[a1, swing, iy], first[a1, swing, iy + 1]
+            run = low + np.searchsorted(begin[low:high], ix, side="right") - 1
+            found[a1, swing] = run if run >= low and ix <= end[run] else -1
 
 
 @numba.njit(nogil=True, cache=True)

@@ -48,6 +48,8 @@ def _rotated(points_mm: FloatArray, turn_rad: float) -> FloatArray:
 def _hull(part: Part, *corners_mm: FloatArray) -> Part:
     """The part of the same radius about the convex hull of several sets of corners."""
     hull = shapely.convex_hull(shapely.multipoints(np.concatenate(corners_mm)))
-    if hull.geom_type == "LineString":
-        return Part(np.asarray(hull.coords), part.radius_mm)
-    return Part(np.asarray(shapely.orient_polygons(hull).exterior.coords)[:-1], part.radius_mm)
+    if hull.geom_type == "Polygon":
+        ring = shapely.orient_polygons(hull).exterior
+        return Part(np.asarray(ring.coords)[:-1], part.radius_mm)
+    # an arm no longer than the disc's radius has no spine: a point that stays or moves straight
+    return Part(np.asarray(hull.coords), part.radius_mm)

@@ -12,6 +12,7 @@ import scipy.ndimage
 
 from satAOI_geo.aoi import Aoi, area
 from satAOI_geo.discs import covered_cells
+from satAOI_geo.freespace import run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.reach import PoseComponents, State
@@ -27,8 +28,8 @@ class Components(Protocol):
     def boxes(self) -> npt.NDArray[np.int64]:
         """Shape (n, 4), least row, least column, greatest row, greatest column of each set."""
 
-    def nodes(self, label: int) -> BoolArray:
-        """The nodes of one set, shape (n_rows, n_columns)."""
+    def nodes(self, label: int, rows: slice, columns: slice) -> BoolArray:
+        """The nodes of one set in a window that holds all of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,40 +79,44 @@ def largest(components: Components, labels: Iterable[int], lattice: Lattice, dis
 
 def zones(components: PoseComponents, lattice: Lattice, disc_mm: float) -> list[Zone]:
     """All components of at least `ZONE_MM2`, the largest raster area first."""
-    found = []
     bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
-    for label in np.flatnonzero(bounds_mm2 >= ZONE_MM2).tolist():
+    labels = np.flatnonzero(bounds_mm2 >= ZONE_MM2).tolist()
+
+    def zone(number: int) -> Zone:
+        label = labels[number]
         rows, columns = _window(components.boxes[label], lattice, disc_mm)
-        nodes = components.nodes(label)
-        aoi = area(nodes[rows, columns], lattice.window(rows, columns), disc_mm)
-        if aoi.area_mm2 >= ZONE_MM2:
-            state = set_down(components, label)
-            found.append(Zone(label, int(nodes.sum()), aoi, state))
+        nodes = components.nodes(label, rows, columns)
+        aoi = area(nodes, lattice.window(rows, columns), disc_mm)
+        return Zone(label, int(nodes.sum()), aoi, set_down(components, label))
+
+    found = [one for one in run_threads(zone, len(labels)) if one.aoi.area_mm2 >= ZONE_MM2]
     return sorted(found, key=lambda zone: (-zone.aoi.raster_area_mm2, zone.label))
 
 
-def set_downs(components: PoseComponents, lattice: Lattice, disc_mm: float) -> Iterator[SetDown]:
+def set_downs(
+    components: PoseComponents, free: BoolArray, lattice: Lattice, disc_mm: float
+) -> Iterator[SetDown]:
     """Set-downs whose areas together cover what any pose can trowel, the greatest gain first.
 
     Greedy: each covers the most cells not covered yet. Gains only shrink as more is covered, so a
     stale gain is an upper bound and need only be looked at again when it comes first.
     """
-    done = np.zeros(lattice.shape, dtype=np.bool_)
+    todo = covered_cells(free, disc_mm / lattice.step_mm)
     bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
     queue = [(-bound, label, False) for label, bound in enumerate(bounds_mm2)]
     heapq.heapify(queue)
     while queue:
         best, label, fresh = heapq.heappop(queue)
         rows, columns = _window(components.boxes[label], lattice, disc_mm)
-        if done[rows, columns].all():
+        if not todo[rows, columns].any():
             continue
-        nodes = components.nodes(label)
-        cells = covered_cells(nodes[rows, columns], disc_mm / lattice.step_mm)
-        gain_mm2 = float((cells & ~done[rows, columns]).sum()) * lattice.step_mm**2
+        nodes = components.nodes(label, rows, columns)
+        gained = covered_cells(nodes, disc_mm / lattice.step_mm) & todo[rows, columns]
+        gain_mm2 = float(np.count_nonzero(gained)) * lattice.step_mm**2
         if gain_mm2 == 0.0:
             continue
         if fresh and gain_mm2 == -best:
-            done[rows, columns] |= cells
+            todo[rows, columns] &= ~gained
             yield SetDown(set_down(components, label), label, gain_mm2)
         else:
             heapq.heappush(queue, (-gain_mm2, label, True))
@@ -121,7 +126,7 @@ def set_down(components: PoseComponents, label: int) -> State:
     """The state deepest inside a component's nodes, arm as straight as possible."""
     rows, columns = (slice(int(a), int(b) + 1) for a, b in components.boxes[label].reshape(2, 2).T)
     depth = scipy.ndimage.distance_transform_cdt(
-        np.pad(components.nodes(label)[rows, columns], 1), "chessboard"
+        np.pad(components.nodes(label, rows, columns), 1), "chessboard"
     )
     at = np.unravel_index(int(depth.argmax()), depth.shape)
     iy, ix = int(at[0]) - 1 + rows.start, int(at[1]) - 1 + columns.start
@@ -131,8 +136,7 @@ def set_down(components: PoseComponents, label: int) -> State:
 def _area_mm2(components: Components, label: int, lattice: Lattice, disc_mm: float) -> float:
     """What the disc covers from one component's nodes, by the raster."""
     rows, columns = _window(components.boxes[label], lattice, disc_mm)
-    nodes = components.nodes(label)[rows, columns]
-    cells = covered_cells(nodes, disc_mm / lattice.step_mm)
+    cells = covered_cells(components.nodes(label, rows, columns), disc_mm / lattice.step_mm)
     return float(cells.sum()) * lattice.step_mm**2
 
 

@@ -73,7 +73,7 @@ def test_a_state_is_in_the_run_that_covers_it(
     n_first = len(stretches(*drawn[0]))
     for swing, (free, _) in enumerate(drawn):
         for iy, ix in np.ndindex(free.shape):
-            run = runs.holding(iy, ix, 0, swing)
+            run = runs.holding(iy, ix)[0, swing]
             assert (run < 0) == (not free[iy, ix])
             if run >= 0:
                 row, begin, end = listed(runs)[run]
@@ -104,7 +104,7 @@ def test_links_join_the_runs_that_single_moves_join(
     ).tolist()
 
     expected = {
-        (runs.holding(iy, ix, 0, 0), runs.holding(iy + rows_up, ix, 0, 1))
+        (runs.holding(iy, ix)[0, 0], runs.holding(iy + rows_up, ix)[0, 1])
         for iy, ix in np.argwhere(allowed).tolist()
     }
     assert {(one, other) for one, other, _ in found} == expected
@@ -141,7 +141,7 @@ def test_painted_runs_cover_their_nodes(drawn: tuple[BoolArray, BoolArray], seed
     chosen = np.flatnonzero(np.random.default_rng(seed).random(runs.begin.size) < 0.5)
     lattice = lattice_of(drawn[0].shape)
     words = lattice.no_nodes()
-    paint(words, runs, chosen)
+    paint(words, runs, chosen, 0)
     expected = np.zeros(lattice.shape, dtype=bool)
     for run in chosen:
         iy, begin, end = listed(runs)[run]
