@@ -341,6 +341,21 @@ def test_every_command_has_help(name: str, capsys: pytest.CaptureFixture[str]) -
     assert f"satAOI-geo {name}" in capsys.readouterr().out
 
 
+def test_an_inspection_is_a_table_of_layers(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["inspect", str(room)]) == 0
+    said = capsys.readouterr()
+    assert "COLUMN" in said.out
+    assert "4.00 × 4.00 m" in said.out
+    assert said.err == ""
+
+
+def test_an_inspection_in_json_is_nothing_else(
+    room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["inspect", str(room), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["source"]["unit"] == "mm"
+
+
 def test_the_version_is_the_packages(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"satAOI-geo {satAOI_geo.__version__}\n"

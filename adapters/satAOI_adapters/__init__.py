@@ -1,6 +1,6 @@
-"""Everything that touches the world: a module a format and direction, listed in two tables.
+"""Everything that touches the world: a module a format and direction, listed in tables.
 
-A new format is one module and one line in `READERS` or `WRITERS`.
+A new format is one module and one line in `READERS`, `INSPECTORS` or `WRITERS`.
 """
 
 from __future__ import annotations
@@ -14,21 +14,34 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from satAOI_adapters.dxf_read import ReadOptions
+    from satAOI_adapters.dxf_read.inspection import Inspection as DxfInspection
     from satAOI_adapters.ifc_read import IfcOptions
+    from satAOI_adapters.ifc_read import Inspection as IfcInspection
     from satAOI_geo.pipeline import Result
     from satAOI_geo.plan import FloorPlan
 
+    Inspection: TypeAlias = DxfInspection | IfcInspection
     Reader: TypeAlias = Callable[[Path, "Choices"], FloorPlan]
+    Inspector: TypeAlias = Callable[[Path, "Choices"], Inspection]
     Writer: TypeAlias = Callable[[Path, Result], None]
 
-__all__ = ["READERS", "WRITERS", "read_plan", "write_aoi", "writer_of"]
+__all__ = [
+    "INSPECTORS",
+    "READERS",
+    "WRITERS",
+    "Choices",
+    "inspect_plan",
+    "read_plan",
+    "write_aoi",
+    "writer_of",
+]
 
 
 class Choices(NamedTuple):
     """How files are to be read, by format; None for the defaults."""
 
-    dxf: ReadOptions | None
-    ifc: IfcOptions | None
+    dxf: ReadOptions | None = None
+    ifc: IfcOptions | None = None
 
 
 def read_plan(
@@ -48,6 +61,14 @@ def read_plan(
     """
     path = Path(path)
     return _by_suffix(READERS, path, "read")(path, Choices(dxf, ifc))
+
+
+def inspect_plan(
+    path: Path | str, dxf: ReadOptions | None = None, ifc: IfcOptions | None = None
+) -> Inspection:
+    """Tell how a plan would be read; arguments and errors as for `read_plan`."""
+    path = Path(path)
+    return _by_suffix(INSPECTORS, path, "inspect")(path, Choices(dxf, ifc))
 
 
 def write_aoi(path: Path | str, result: Result) -> None:
@@ -81,6 +102,18 @@ def _read_ifc(path: Path, choices: Choices) -> FloorPlan:
     return ifc_read.read(path, choices.ifc or ifc_read.IfcOptions())
 
 
+def _inspect_dxf(path: Path, choices: Choices) -> Inspection:
+    from satAOI_adapters.dxf_read import inspection, options
+
+    return inspection.inspect(path, choices.dxf or options.ReadOptions())
+
+
+def _inspect_ifc(path: Path, choices: Choices) -> Inspection:
+    from satAOI_adapters import ifc_read
+
+    return ifc_read.inspect(path, choices.ifc or ifc_read.IfcOptions())
+
+
 def _write_dxf(path: Path, result: Result) -> None:
     from satAOI_adapters import dxf_write
 
@@ -101,6 +134,9 @@ def _write_npz(path: Path, result: Result) -> None:
 
 READERS: Final[dict[str, Reader]] = {".dxf": _read_dxf, ".ifc": _read_ifc}
 """Suffix, in lower case, to the function that reads such a file."""
+
+INSPECTORS: Final[dict[str, Inspector]] = {".dxf": _inspect_dxf, ".ifc": _inspect_ifc}
+"""Suffix, in lower case, to the function that tells how such a file is read."""
 
 WRITERS: Final[dict[str, Writer]] = {".dxf": _write_dxf, ".png": _write_png, ".npz": _write_npz}
 """Suffix, in lower case, to the function that writes such a file."""

@@ -7,6 +7,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
+    from satAOI_geo.plan import Finding
     from satAOI_geo.report import FindingFigures
 
 TOLD_OF_A_SORT = 3
@@ -43,7 +44,7 @@ def _say(word: str, style: str, message: str) -> None:
     console.print(" ".join(message.split()))
 
 
-def say_findings(findings: Iterable["FindingFigures"]) -> None:
+def say_findings(findings: Iterable["Finding | FindingFigures"]) -> None:
     """The findings sort by sort, the first few of each in full and the number of the rest."""
     of_a_sort = sorted(findings, key=lambda finding: finding.code)
     for code, group in groupby(of_a_sort, key=lambda finding: finding.code):
@@ -54,7 +55,7 @@ def say_findings(findings: Iterable["FindingFigures"]) -> None:
             say_note(f"and {len(same) - TOLD_OF_A_SORT} more of '{code}'; --report lists all")
 
 
-def sentence_of(finding: "FindingFigures") -> str:
+def sentence_of(finding: "Finding | FindingFigures") -> str:
     """What was found, where, and what to do about it."""
     where = []
     if finding.layer:

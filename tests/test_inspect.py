@@ -1,0 +1,116 @@
+"""How a drawing is read, as data and as tables."""
+
+import json
+from pathlib import Path
+
+import ezdxf
+import pytest
+
+from satAOI_adapters import inspect_plan, inspect_write
+from satAOI_adapters.dxf_read import ReadOptions
+from satAOI_adapters.dxf_read.inspection import Inspection, LayerFigures
+from satAOI_adapters.layers import Certainty, Meaning
+from satAOI_geo import UnitError
+
+SAMPLES = Path(__file__).parents[1] / "samples"
+
+
+@pytest.fixture
+def drawing(tmp_path: Path) -> Path:
+    """A drawing in metres: a wall of 4 m and one of 3 m, a layer that is off, an unknown one."""
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = 6
+    space = document.modelspace()
+    space.add_line((1, 1), (5, 1), dxfattribs={"layer": "WALL"})
+    space.add_line((5, 1), (5, 4), dxfattribs={"layer": "WALL"})
+    space.add_circle((2, 3), 0.5, dxfattribs={"layer": "Zeug"})
+    document.layers.add("FURNITURE").off()
+    space.add_line((0, 0), (9, 9), dxfattribs={"layer": "FURNITURE"})
+    file = tmp_path / "drawing.dxf"
+    document.saveas(file)
+    return file
+
+
+def layer_of(inspection: Inspection, name: str) -> LayerFigures:
+    (layer,) = (layer for layer in inspection.layers if layer.layer == name)
+    return layer
+
+
+def inspected(path: Path, **options: str) -> Inspection:
+    inspection = inspect_plan(path, ReadOptions(**options))
+    assert isinstance(inspection, Inspection)
+    return inspection
+
+
+def test_a_layer_tells_what_it_is_taken_for_and_why(drawing: Path) -> None:
+    wall = layer_of(inspected(drawing), "WALL")
+    assert wall.meaning is Meaning.WALL
+    assert wall.certainty is Certainty.CERTAIN
+    assert wall.entities == {"LINE": 2}
+
+
+def test_lengths_are_in_millimetres_whatever_the_unit(drawing: Path) -> None:
+    assert layer_of(inspected(drawing), "WALL").length_mm == pytest.approx(7000, rel=1e-12)
+    in_feet = layer_of(inspected(drawing, units="ft"), "WALL")
+    assert in_feet.length_mm == pytest.approx(7 * 304.8, rel=1e-12)
+
+
+def test_a_layer_no_pattern_knows_is_unknown(drawing: Path) -> None:
+    unknown = layer_of(inspected(drawing), "Zeug")
+    assert unknown.meaning is None
+    assert unknown.certainty is Certainty.UNKNOWN
+
+
+def test_what_is_hidden_is_counted_and_not_measured(drawing: Path) -> None:
+    inspection = inspected(drawing)
+    hidden = layer_of(inspection, "FURNITURE")
+    assert (hidden.n_hidden, hidden.entities, hidden.length_mm) == (1, {}, 0)
+    assert inspection.bounds == (1, 1, 5, 4)
+    assert inspection.size_mm == (4000, 3000)
+
+
+def test_the_unit_comes_with_its_source(drawing: Path) -> None:
+    assert (inspected(drawing).source.unit, inspected(drawing).source.unit_source) == (
+        "m",
+        "header",
+    )
+    assert inspected(drawing, units="ft").source.unit_source == "option"
+
+
+def test_without_any_unit_the_error_shows_the_sizes(drawing: Path) -> None:
+    document = ezdxf.readfile(drawing)
+    document.header["$INSUNITS"] = 0
+    document.modelspace().add_line((0, 0), (400, 0), dxfattribs={"layer": "WALL"})
+    document.save()
+    with pytest.raises(UnitError, match=r"--units mm for 0\.4 × 0\.004 m"):
+        inspected(drawing)
+
+
+def test_the_tables_have_a_line_a_layer(drawing: Path) -> None:
+    facts, layers = inspect_write.tables_of(inspected(drawing))
+    assert ("size", "4.00 × 3.00 m") in facts
+    assert [row[:3] for row in layers[1:]] == [
+        ("FURNITURE", "not read", "unknown"),
+        ("WALL", "wall", "certain"),
+        ("Zeug", "-", "unknown"),
+    ]
+    assert layers[1][-1] == "1 hidden"
+
+
+def test_the_json_holds_the_same(drawing: Path) -> None:
+    inspection = inspected(drawing)
+    data = json.loads(inspect_write.json_of(inspection))
+    assert data["source"]["unit"] == "m"
+    assert [layer["layer"] for layer in data["layers"]] == [
+        layer.layer for layer in inspection.layers
+    ]
+
+
+def test_a_models_storeys_are_told() -> None:
+    model = SAMPLES / "two_rooms_900.ifc"
+    if not model.exists():
+        pytest.skip("no sample model")
+    facts, storeys, classes = inspect_write.tables_of(inspect_plan(model))
+    assert facts[0][0] == "model"
+    assert storeys[1][0] == "1"
+    assert classes[0] == ("class", "number")
