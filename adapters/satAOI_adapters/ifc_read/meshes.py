@@ -1,8 +1,8 @@
 """Solids as triangles: what stands in a band of heights, for bodies that are no stack of prisms.
 
 The plan of what stands between two heights is the union of the triangles' parts between them,
-seen from above, and of one section wherever the body goes right through: no number of sections
-alone would see a plate that lies between two of them.
+seen from above, and of one section, which holds wherever the body goes right through. No number of
+sections alone would see a plate that lies between two of them.
 """
 
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ LEVEL_MM: Final = 0.01
 """A triangle whose corners differ less in height is level."""
 
 N_SECTIONS: Final = 3
-"""Sections taken through a body: one would do if every mesh were closed."""
+"""Sections taken through a mesh with holes in its surface; one does for a closed one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ class Mesh:
             return []
         faces = list(_plan_triangles(cut.corners_mm[cut.triangles]))
         lines: list[LineString] = []
-        for level_mm in _levels_mm(cut):
+        for level_mm in _levels_mm(cut, 1 if _is_closed(self) else N_SECTIONS):
             closed, loose = _section(cut, level_mm)
             faces.extend(closed)
             lines.extend(loose)
@@ -116,13 +116,20 @@ def _between(mesh: Mesh, low_mm: float, high_mm: float) -> Mesh:
     return Mesh(np.asarray(part.vertices), np.asarray(part.faces), mesh.growth_mm)
 
 
-def _levels_mm(mesh: Mesh) -> list[float]:
-    """Heights half-way between neighbouring corners: lowest, middle and highest."""
+def _is_closed(mesh: Mesh) -> bool:
+    """Whether every edge belongs to two triangles, so that the surface bounds a solid."""
+    edges = mesh.triangles[:, ((0, 1), (1, 2), (2, 0))].reshape(-1, 2)
+    _, counts = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+    return bool((counts == 2).all())
+
+
+def _levels_mm(mesh: Mesh, n_levels: int) -> list[float]:
+    """Heights half-way between neighbouring corners, spread from the lowest to the highest."""
     heights_mm = np.unique(np.round(mesh.corners_mm[:, 2], 3))
     between_mm = (heights_mm[1:] + heights_mm[:-1]) / 2
     if not len(between_mm):
         return []
-    chosen = np.linspace(0, len(between_mm) - 1, N_SECTIONS).round().astype(int)
+    chosen = np.linspace(0, len(between_mm) - 1, n_levels).round().astype(int)
     return [float(between_mm[i]) for i in np.unique(chosen)]
 
 

@@ -286,7 +286,12 @@ def candidates(model: ifcopenshell.file, choice: Choice) -> list[entity_instance
     names = {"IfcElement", *choice.added}
     if model.schema != "IFC4X3":
         names.add("IfcProxy")
-    found = {product.id(): product for name in names for product in model.by_type(name)}
+    found = {
+        product.id(): product
+        for name in names
+        for product in model.by_type(name)
+        if name != "IfcElement" or not product.is_a("IfcFeatureElementSubtraction")
+    }
     return sorted(found.values(), key=lambda product: (str(product.GlobalId), product.id()))
 
 

@@ -65,12 +65,7 @@ def survey(site: Site, storey: Storey | None, *, asked_mm: float | None, band_mm
         EmptyPlanError: If there is no floor and none can be inferred.
         DrawingError: If most elements have no usable geometry.
     """
-    if not any(body_items(product) for product in site.products):
-        _refuse_if_most_failed(site)
-        raise EmptyPlanError(
-            "the model holds no wall, slab or other element with a body; export it with the "
-            "geometry of its elements"
-        )
+    _refuse_if_most_failed(site)
     ground = ground_of(site, storey, asked_mm)
     standing = list(_standing(site, ground, band_mm))
     _refuse_if_most_failed(site)
