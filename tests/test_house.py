@@ -160,3 +160,25 @@ def test_no_file_names_the_machine_it_was_written_on() -> None:
         if file.is_file() and places.search(file.read_text(encoding="utf-8", errors="replace"))
     }
     assert named == set()
+
+
+def test_the_python_of_the_readme_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```python\n(.*?)```", readme, re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "samples").symlink_to(ROOT / "samples")
+    exec(compile(block, "README.md", "exec"), {})  # noqa: S102  that is what a reader does
+    assert capsys.readouterr().out.endswith(" m²\n")
+    assert (tmp_path / "aoi.dxf").exists()
+
+
+def test_the_commands_of_the_readme_name_commands_and_options_that_exist() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = "\n".join(re.findall(r"```bash\n(.*?)```", readme, re.DOTALL))
+    for line in re.findall(r"satAOI-geo (.*)", blocks):
+        words = line.split("#")[0].split(">")[0].split()
+        command = commands.commands.get(words[0], commands.commands["run"])
+        own = {option for parameter in command.params for option in parameter.opts}
+        assert {word for word in words if word.startswith("-")} <= own

@@ -1,5 +1,6 @@
 """The report as JSON for programs and as lines for people."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from satAOI_adapters.files import written_whole
@@ -8,6 +9,9 @@ from satAOI_geo.report import PatchFigures, Report
 
 Line = tuple[str, str]
 """A label and what is said under it."""
+
+TOLD_ZONES = 4
+"""Zones told by their area; a dense hall has hundreds of small ones."""
 
 TOLD_M2 = 0.005
 """Areas below this print as 0.00 m² and are not worth a line."""
@@ -38,7 +42,6 @@ def lines_of(report: Report) -> list[Line]:
     obstacles = f"{floor.obstacle_percent:.1f} % of the floor, {floor.n_obstacles} pieces"
     parts = "1 part" if aoi.n_parts == 1 else f"{aoi.n_parts} parts"
     share = f"{aoi.percent_of_free:.1f} % of the free floor, {parts}"
-    zones = ", ".join(f"{zone.area_m2:.2f}" for zone in report.zones)
     return [
         ("floor", f"{floor.area_m2:.2f} m² ({floor.source})"),
         ("obstacles", f"{floor.obstacle_area_m2:.2f} m² ({obstacles})"),
@@ -46,9 +49,16 @@ def lines_of(report: Report) -> list[Line]:
         ("start", f"({x_mm:.0f}, {y_mm:.0f}) mm ({start.source})"),
         ("area of interest", f"{aoi.area_m2:.2f} m² ({share}, {aoi.connectivity}-connected)"),
         ("upper estimate", f"{report.disc_connected.area_m2:.2f} m² (disc-connected)"),
-        ("zones", f"{zones} m² (what the robot trowels from one place each)"),
+        ("zones", zones_in_words([zone.area_m2 for zone in report.zones])),
         *left_over(report.unreached),
     ]
+
+
+def zones_in_words(areas_m2: Sequence[float]) -> str:
+    """What the robot trowels from each place it may be set down at, the largest few."""
+    told = ", ".join(f"{area_m2:.2f}" for area_m2 in areas_m2[:TOLD_ZONES])
+    n_smaller = max(len(areas_m2) - TOLD_ZONES, 0)
+    return f"{told} m²" + (f" and {n_smaller} smaller" if n_smaller else "")
 
 
 def left_over(patches: list[PatchFigures]) -> list[Line]:
