@@ -45,6 +45,10 @@ class Line:
     start: Point
     end: Point
 
+    def spots(self) -> tuple[Point, ...]:
+        """Points whose box holds the piece."""
+        return self.start, self.end
+
     def reversed(self) -> "Line":
         """The same piece, travelled the other way."""
         return Line(self.end, self.start)
@@ -86,6 +90,14 @@ class Arc:
     def is_full(self) -> bool:
         """Whether it closes on itself."""
         return self.sweep_rad == math.tau
+
+    def spots(self) -> tuple[Point, ...]:
+        """Points whose box holds the piece: of a closed one exactly, else with its chords."""
+        if not self.is_full:
+            return tuple(self.chords())
+        reach_x, reach_y = math.hypot(self.u[0], self.v[0]), math.hypot(self.u[1], self.v[1])
+        x, y = self.centre
+        return (x - reach_x, y - reach_y), (x + reach_x, y + reach_y)
 
     def reversed(self) -> "Arc":
         """The same piece, travelled the other way."""
@@ -146,6 +158,11 @@ class Spline:
     start: Point
     end: Point
     beziers: tuple[FloatArray, ...]
+
+    def spots(self) -> tuple[Point, ...]:
+        """Points whose box holds the piece: its control points."""
+        corners = np.concatenate([bezier[:, :2] / bezier[:, 2:] for bezier in self.beziers])
+        return tuple((float(x), float(y)) for x, y in corners)
 
     def reversed(self) -> "Spline":
         """The same piece, travelled the other way."""

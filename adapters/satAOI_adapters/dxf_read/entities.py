@@ -85,6 +85,12 @@ class Feature:
     is_area: bool = False
     width_mm: float = 0.0
 
+    def box(self) -> tuple[float, float, float, float]:
+        """Left, bottom, right, top of a box around its paths."""
+        spots = [spot for path in self.paths for piece in path.pieces for spot in piece.spots()]
+        x, y = zip(*spots, strict=True)
+        return min(x), min(y), max(x), max(y)
+
 
 @dataclass(frozen=True, slots=True)
 class Placement:

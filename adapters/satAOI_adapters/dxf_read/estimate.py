@@ -161,7 +161,7 @@ def _quarter_turns(
 
 def _column_sizes(features: Sequence[tuple[Meaning | None, Feature]]) -> FloatArray:
     """The shorter sides of closed shapes on column layers."""
-    sizes = []
+    sizes: list[float] = []
     for meaning, feature in features:
         if meaning is Meaning.COLUMN:
             sizes.extend(_shorter_side(path) for path in feature.paths if path.closed)
@@ -204,7 +204,7 @@ def _wall_thicknesses(features: Sequence[tuple[Meaning | None, Feature]]) -> Flo
     beside = (sines < 0.02) & slim
     nearest = np.full(len(ends), np.inf)
     np.minimum.at(nearest, own[beside], distances[beside])
-    return nearest[np.isfinite(nearest)]
+    return np.asarray(nearest[np.isfinite(nearest)])
 
 
 def _attributes(entities: Iterable[DXFEntity], names: dict[str, str]) -> FloatArray:

@@ -1,21 +1,28 @@
 """Block references resolved: every visible entity of model space with its place and its layer.
 
 The block graph is checked before anything is expanded, so that a small file cannot ask for
-endless work; the expansion itself keeps its own stack.
+endless work; the expansion itself keeps its own stack. External references are followed only
+where the caller can supply them; objects of other programs are replaced by the picture of
+themselves that the drawing carries, if it does.
 """
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
-from typing import Final
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Final, TypeAlias
 
 from ezdxf.document import Drawing
-from ezdxf.entities import DXFEntity, DXFGraphic, Insert
+from ezdxf.entities import ACADProxyEntity, DXFEntity, DXFGraphic, DXFTagStorage, Insert
+from ezdxf.layouts import BaseLayout
+from ezdxf.lldxf.const import DXFError
 from ezdxf.math import Matrix44, Vec3
 
 from satAOI_adapters.dxf_read import limits
 from satAOI_geo.errors import DrawingError
 from satAOI_geo.plan import Finding
+
+Xrefs: TypeAlias = Callable[[str], Drawing | None]
+"""The drawing that an external reference means, by the path it is stored with, if it is at hand."""
 
 BY_PARENT: Final = "0"
 """What is drawn on this layer inside a block lies on the block reference's layer."""
@@ -33,7 +40,7 @@ class Placed:
         handle: Of the entity of model space that brought it in.
     """
 
-    entity: DXFGraphic
+    entity: DXFEntity
     matrix: Matrix44
     layer: str
     blocks: tuple[str, ...]
@@ -46,17 +53,36 @@ class Placed:
 
 
 @dataclass(frozen=True, slots=True)
+class Missing:
+    """An external reference that is not at hand.
+
+    Attributes:
+        name: Of its block.
+        path: As stored in the drawing.
+        layer: The layer its reference lies on.
+        handle: Of the reference.
+    """
+
+    name: str
+    path: str
+    layer: str
+    handle: str
+
+
+@dataclass(frozen=True, slots=True)
 class Expansion:
-    """What model space shows.
+    """What a drawing shows.
 
     Attributes:
         placed: Visible entities in drawing order.
         hidden: Entities not read because of a layer that is frozen or off, by layer.
-        findings: Block references that could not be resolved.
+        missing: External references that could not be followed.
+        findings: What could not be resolved, or was replaced.
     """
 
     placed: tuple[Placed, ...]
     hidden: Counter[str]
+    missing: tuple[Missing, ...]
     findings: tuple[Finding, ...]
 
 
@@ -65,9 +91,12 @@ class _Walk:
     """The state of one expansion."""
 
     document: Drawing
+    xrefs: Xrefs
     include_hidden: bool
     placed: list[Placed] = field(default_factory=list)
     hidden: Counter[str] = field(default_factory=Counter)
+    pictured: Counter[str] = field(default_factory=Counter)
+    missing: list[Missing] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
 
     def is_frozen(self, layer: str) -> bool:
@@ -85,45 +114,72 @@ class _Walk:
 
 @dataclass(frozen=True, slots=True)
 class _Level:
-    """One block reference on the stack: its entities still to come, and what they inherit."""
+    """One block reference on the stack: its entities still to come, and what they inherit.
+
+    `prefix` goes before the layers of an external reference, as in the drawing that holds it.
+    """
 
     entities: Iterator[DXFEntity]
     matrix: Matrix44
     layer: str
     blocks: tuple[str, ...]
     handle: str
+    document: Drawing
+    prefix: str = ""
 
 
-def expand(document: Drawing, *, include_hidden: bool) -> Expansion:
-    """Resolve the block references of model space.
+def expand(document: Drawing, *, xrefs: Xrefs, include_hidden: bool) -> Expansion:
+    """Resolve the block references of model space, or of a layout if model space is empty.
 
     Raises:
         DrawingError: If a block contains itself.
         LimitError: If there would be too many entities, copies or levels.
     """
-    model = document.modelspace()
-    limits.hold(
-        "entities once its blocks are resolved",
-        _count(document, model),
-        limits.MAX_ENTITIES,
-        "save the part that is needed as a drawing of its own",
-    )
-    walk = _Walk(document, include_hidden)
-    stack = [_Level(iter(model), Matrix44(), BY_PARENT, (), "")]
+    space, findings = _space(document)
+    _hold_count(document, space)
+    walk = _Walk(document, xrefs, include_hidden, findings=findings)
+    stack = [_Level(iter(space), Matrix44(), BY_PARENT, (), "", document)]
     while stack:
+        limits.hold(
+            "levels of blocks in blocks", len(stack), limits.MAX_NESTING + 1, "explode some of them"
+        )
         entity = next(stack[-1].entities, None)
         if entity is None:
             stack.pop()
-        elif isinstance(entity, DXFGraphic):
+        else:
             stack.extend(_visit(walk, stack[-1], entity))
-    return Expansion(tuple(walk.placed), walk.hidden, tuple(walk.findings))
+    return Expansion(
+        tuple(walk.placed),
+        walk.hidden,
+        tuple(walk.missing),
+        (*walk.findings, *_pictured(walk.pictured)),
+    )
 
 
-def _visit(walk: _Walk, level: _Level, entity: DXFGraphic) -> Iterable[_Level]:
+def _space(document: Drawing) -> tuple[BaseLayout, list[Finding]]:
+    """Model space; the fullest layout where model space is empty."""
+    model = document.modelspace()
+    layouts = [document.paperspace(name) for name in document.layout_names() if name != "Model"]
+    fullest = max(layouts, key=_n_drawn, default=model)
+    if len(model) or not _n_drawn(fullest):
+        return model, []
+    return fullest, [
+        Finding(
+            "paper-space",
+            f"model space is empty: layout '{fullest.name}' is read instead",
+            "check the unit: layouts are often drawn at the size of the paper",
+        )
+    ]
+
+
+def _n_drawn(layout: BaseLayout) -> int:
+    return sum(entity.dxftype() != "VIEWPORT" for entity in layout)
+
+
+def _visit(walk: _Walk, level: _Level, entity: DXFEntity) -> Iterable[_Level]:
     """Note one entity; for a block reference, the levels it opens."""
-    layer = entity.dxf.layer
-    if layer == BY_PARENT:
-        layer = level.layer
+    own = _layer(entity)
+    layer = level.layer if own == BY_PARENT else level.prefix + own
     handle = level.handle or str(entity.dxf.get("handle") or "")
     if entity.dxf.get("invisible", 0) or walk.is_frozen(layer):
         walk.hidden[layer] += 1
@@ -132,8 +188,38 @@ def _visit(walk: _Walk, level: _Level, entity: DXFGraphic) -> Iterable[_Level]:
         yield from _levels(walk, level, entity, layer, handle)
     elif walk.is_off(layer):
         walk.hidden[layer] += 1
+    elif picture := _picture(entity):
+        walk.pictured[entity.dxftype()] += 1
+        yield replace(level, entities=iter(picture), layer=layer, handle=handle)
     else:
         walk.placed.append(Placed(entity, level.matrix, layer, level.blocks, handle))
+
+
+def _layer(entity: DXFEntity) -> str:
+    if isinstance(entity, DXFTagStorage):
+        return str(entity.graphic_properties().get("layer", BY_PARENT))
+    return str(entity.dxf.get("layer", BY_PARENT))
+
+
+def _picture(entity: DXFEntity) -> list[DXFGraphic]:
+    """The lines that another program left as the picture of its object; none for others."""
+    if not isinstance(entity, DXFTagStorage | ACADProxyEntity):
+        return []
+    try:
+        return list(entity.virtual_entities())
+    except (DXFError, ValueError, LookupError, ArithmeticError):
+        # a damaged picture is as good as none: the object counts as unreadable
+        return []
+
+
+def _pictured(pictured: Counter[str]) -> Iterator[Finding]:
+    for kind, count in pictured.items():
+        yield Finding(
+            "proxy-picture",
+            f"{count} {kind} are objects of another program: the picture of them that the drawing "
+            "carries is read",
+            "export the drawing without such objects (TArch: export as T3) if something is missing",
+        )
 
 
 def _levels(
@@ -141,7 +227,7 @@ def _levels(
 ) -> Iterable[_Level]:
     """One level for each copy of a block reference."""
     name = insert.dxf.get("name", "")
-    block = walk.document.blocks.get(name)
+    block = level.document.blocks.get(name)
     fault = _fault(insert, exists=block is not None)
     if fault or block is None:
         walk.findings.append(
@@ -154,9 +240,20 @@ def _levels(
             )
         )
         return
+    content: BaseLayout = block
+    document, prefix = level.document, level.prefix
+    if block.block is not None and block.block.is_xref:
+        path = str(block.block.dxf.get("xref_path", ""))
+        external = walk.xrefs(path)
+        if external is None:
+            walk.missing.append(Missing(name, path, layer, handle))
+            return
+        content, document, prefix = external.modelspace(), external, f"{name}|"
+        _hold_count(external, content)
     for offset in _copies(insert):
         matrix = insert.matrix44() * Matrix44.translate(*offset) * level.matrix
-        yield _Level(iter(block), matrix, layer, (*level.blocks, name), handle)
+        blocks = (*level.blocks, name)
+        yield _Level(iter(content), matrix, layer, blocks, handle, document, prefix)
 
 
 def _fault(insert: Insert, *, exists: bool) -> str:
@@ -182,10 +279,19 @@ def _copies(insert: Insert) -> Iterator[Vec3]:
             yield Vec3(ocs.to_wcs(step.rotate_deg(insert.dxf.rotation)))
 
 
-def _count(document: Drawing, model: Iterable[DXFEntity]) -> int:
+def _hold_count(document: Drawing, space: Iterable[DXFEntity]) -> None:
+    limits.hold(
+        "entities once its blocks are resolved",
+        _count(document, space),
+        limits.MAX_ENTITIES,
+        "save the part that is needed as a drawing of its own",
+    )
+
+
+def _count(document: Drawing, space: Iterable[DXFEntity]) -> int:
     """Entities after expansion, from the block graph alone, in time linear in its size."""
     totals: dict[str, int] = {}
-    top = list(model)
+    top = list(space)
     path: list[str] = []
     pending = [(name, False) for name in _references(top)]
     while pending:

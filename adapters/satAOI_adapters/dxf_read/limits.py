@@ -26,8 +26,8 @@ MAX_VERTICES: Final = 5_000_000
 MAX_CURVE_STEPS: Final = 100_000
 """Straight pieces that stand for one curve."""
 
-MAX_COORDINATE_MM: Final = 1e9
-"""Distance of anything drawn from the plan's origin: 1000 km."""
+MAX_COORDINATE: Final = 1e9
+"""Drawing units between anything that is read and the middle of the drawing."""
 
 
 def hold(limit: str, value: float, allowed: float, remedy: str) -> None:

@@ -12,10 +12,21 @@ class ReadOptions:
         units: Key of `units.MM_PER_UNIT`; goes before what the drawing says.
         layers: The user's own layer patterns (TOML).
         encoding: Of the names in the file; goes before what the file declares.
+        xref_dir: Folder in which external references are looked for, as DXF; without it none is
+            followed.
         include_hidden: Read layers that are frozen or switched off, too.
+        plan: Which of several plans in one drawing, counted from 1 as `inspect` lists them.
+        region: Left, bottom, right, top of the part to read, in drawing units.
+        start: The start, in drawing units; of several plans the one that holds it is read.
+        close_gaps_mm: Line ends this far apart are joined when walls and outlines are closed.
     """
 
     units: str | None = None
     layers: Path | None = None
     encoding: str | None = None
+    xref_dir: Path | None = None
     include_hidden: bool = False
+    plan: int | None = None
+    region: tuple[float, float, float, float] | None = None
+    start: tuple[float, float] | None = None
+    close_gaps_mm: float = 1.0

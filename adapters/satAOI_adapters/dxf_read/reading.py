@@ -19,8 +19,9 @@ from satAOI_adapters.dxf_read.entities import LOCAL_DIGITS, Feature
 from satAOI_adapters.dxf_read.floor import floor_of
 from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
 from satAOI_adapters.dxf_read.options import ReadOptions
+from satAOI_adapters.dxf_read.plans import Drawn, chosen, clusters, within
 from satAOI_adapters.dxf_read.shapes import middle_line
-from satAOI_adapters.dxf_read.survey import Survey, features, survey
+from satAOI_adapters.dxf_read.survey import Survey, survey
 from satAOI_adapters.dxf_read.unclassified import unclassified
 from satAOI_adapters.layers import KINDS, Meaning
 from satAOI_geo.plan import (
@@ -56,17 +57,19 @@ def read(path: Path, options: ReadOptions) -> FloorPlan:
     """
     drawing = survey(path, options)
     frame = drawing.frame()
-    drawn = features(drawing, frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
+    start_mm, start_findings = _start(drawing, frame, options)
+    everything = drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
+    drawn, choice = _chosen(everything, options, start_mm, frame)
     standing = _standing(drawn, frame)
     sills = spans(drawn[Meaning.DOOR], [o.region() for o in standing.obstacles])
     floor = floor_of(drawn[Meaning.FLOOR], standing.obstacles, sills, frame)
     others = unclassified(drawn[None], floor.region, standing.obstacles)
-    start_mm, start_findings = _start(drawing, frame)
     plan = FloorPlan(
         floor=floor.region,
         obstacles=_on(floor.region, (*standing.obstacles, *others.obstacles)),
         findings=(
             *drawing.findings,
+            *choice,
             *standing.findings,
             *floor.findings,
             *others.findings,
@@ -80,7 +83,35 @@ def read(path: Path, options: ReadOptions) -> FloorPlan:
     return _from_corner(plan)
 
 
-def _standing(drawn: dict[Meaning | None, list[Feature]], frame: Frame) -> Standing:
+def _chosen(
+    drawn: Drawn, options: ReadOptions, start_mm: Point | None, frame: Frame
+) -> tuple[Drawn, tuple[Finding, ...]]:
+    """What belongs to the plan that is read, and what is to be said about the rest."""
+    if options.region is not None:
+        corners = frame.to_local_mm(np.reshape(options.region, (2, 2)))
+        (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
+        kept, n_left_out = within(drawn, (left, bottom, right, top))
+        return kept, _left_out(n_left_out, "the region")
+    cluster, findings = chosen(clusters(drawn), options.plan, start_mm, frame)
+    if cluster is None:
+        return drawn, findings
+    kept, n_left_out = within(drawn, cluster.bounds_mm)
+    return kept, (*findings, *_left_out(n_left_out, "the plan"))
+
+
+def _left_out(count: int, what: str) -> tuple[Finding, ...]:
+    if not count:
+        return ()
+    return (
+        Finding(
+            "left-out",
+            f"{count} entities outside {what} are left out",
+            "choose another part with --plan N or --region if they belong to the floor",
+        ),
+    )
+
+
+def _standing(drawn: Drawn, frame: Frame) -> Standing:
     """The obstacles of all kinds that layers name."""
     by_kind: dict[Kind, list[Feature]] = {kind: [] for kind in Kind}
     for meaning, kind in KINDS.items():
@@ -115,18 +146,21 @@ def _on(floor: Region, obstacles: Sequence[Obstacle]) -> tuple[Obstacle, ...]:
     return tuple(obstacle for obstacle in obstacles if floor.intersects(obstacle.region()))
 
 
-def _start(drawing: Survey, frame: Frame) -> tuple[Point | None, tuple[Finding, ...]]:
-    """The place that the drawing marks as the start, and what is to be said about it."""
+def _start(
+    drawing: Survey, frame: Frame, options: ReadOptions
+) -> tuple[Point | None, tuple[Finding, ...]]:
+    """The start that the user gives or the drawing marks, and what is to be said about it."""
     marks = [
         place
         for entity in drawing.document.modelspace()
         if entity.dxf.get("layer", "").upper() == START_LAYER
         for place in _places(entity)
     ]
+    if options.start is not None:
+        return _spot(frame.to_local_mm(options.start)), ()
     if not marks:
         return None, ()
-    x_mm, y_mm = frame.to_local_mm(marks[0])
-    start_mm = (round(float(x_mm), LOCAL_DIGITS), round(float(y_mm), LOCAL_DIGITS))
+    start_mm = _spot(frame.to_local_mm(marks[0]))
     if len(marks) == 1:
         return start_mm, ()
     return start_mm, (

@@ -3,7 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -11,30 +11,26 @@ import numpy as np
 from ezdxf.document import Drawing
 
 from satAOI_adapters.dxf_read import limits
-from satAOI_adapters.dxf_read.curves import Arc, Piece, Point
-from satAOI_adapters.dxf_read.entities import DRAWN, NO_LINEWORK, Feature, features_of
+from satAOI_adapters.dxf_read.curves import Point
+from satAOI_adapters.dxf_read.entities import DRAWN, Feature, features_of
 from satAOI_adapters.dxf_read.estimate import estimate
-from satAOI_adapters.dxf_read.expand import Expansion, Placed, expand
+from satAOI_adapters.dxf_read.expand import Expansion, expand
+from satAOI_adapters.dxf_read.meaning import LISTED, Seen, with_meaning
 from satAOI_adapters.dxf_read.opening import open_drawing
 from satAOI_adapters.dxf_read.options import ReadOptions
+from satAOI_adapters.dxf_read.plans import Drawn
 from satAOI_adapters.dxf_read.units import Unit, unit_of
-from satAOI_adapters.layers import KINDS, LayerTable, Meaning, Verdict, layer_table
+from satAOI_adapters.dxf_read.unread import missing_xrefs, unread_entities
+from satAOI_adapters.dxf_read.xrefs import xrefs_in
+from satAOI_adapters.layers import Meaning, layer_table
 from satAOI_geo.errors import EmptyPlanError
 from satAOI_geo.plan import Finding, Frame
 
 FEET_AND_INCHES: Final = (3, 4)
 """$LUNITS of a drawing that writes lengths in feet and inches."""
 
-LISTED: Final = 5
-"""Layers that a message names before it counts the rest."""
-
-
-@dataclass(frozen=True, slots=True)
-class Seen:
-    """An entity that is drawn and what it stands for."""
-
-    placed: Placed
-    verdict: Verdict
+NO_UNIT: Final = 0
+"""$INSUNITS of a drawing that does not say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +45,7 @@ class Survey:
         hidden: Entities on layers that are frozen or off, by layer.
         unit: The unit of length.
         box: Left, bottom, right, top of what is drawn, in drawing units.
+        middle: In the midst of it, in drawing units; a few strays do not move it.
         findings: What was noticed so far.
     """
 
@@ -59,13 +56,32 @@ class Survey:
     hidden: Counter[str]
     unit: Unit
     box: tuple[float, float, float, float]
+    middle: Point
     findings: tuple[Finding, ...]
 
     def frame(self) -> Frame:
-        """A frame of whole millimetres at the lower left corner of what is drawn."""
-        left_mm, bottom_mm = self.box[0] * self.unit.mm, self.box[1] * self.unit.mm
-        origin_mm = (float(math.floor(left_mm)), float(math.floor(bottom_mm)))
+        """A frame of whole millimetres in the midst of what is drawn."""
+        x_mm, y_mm = self.middle[0] * self.unit.mm, self.middle[1] * self.unit.mm
+        origin_mm = (float(math.floor(x_mm)), float(math.floor(y_mm)))
         return Frame(origin_mm=origin_mm, mm_per_unit=self.unit.mm)
+
+    def drawn(self, frame: Frame, wanted: Iterable[Meaning | None]) -> Drawn:
+        """What the entities of some meanings draw, in millimetres of the frame.
+
+        Raises:
+            DrawingError: If an entity cannot be read.
+            LimitError: If there are too many corners.
+        """
+        found: Drawn = {meaning: [] for meaning in wanted}
+        n_pieces = 0
+        for entity in self.seen:
+            if entity.verdict.meaning not in found:
+                continue
+            features = features_of(entity.placed, frame.mm_per_unit, frame.origin_mm)
+            found[entity.verdict.meaning].extend(features)
+            n_pieces += sum(len(path.pieces) for feature in features for path in feature.paths)
+            limits.hold("corners", n_pieces, limits.MAX_VERTICES, "simplify the drawing")
+        return found
 
 
 def survey(path: Path, options: ReadOptions) -> Survey:
@@ -78,119 +94,90 @@ def survey(path: Path, options: ReadOptions) -> Survey:
     """
     table = layer_table(options.layers)
     opened = open_drawing(path, table, options.encoding)
-    expansion = expand(opened.document, include_hidden=options.include_hidden)
+    expansion = expand(
+        opened.document,
+        xrefs=xrefs_in(options.xref_dir, table),
+        include_hidden=options.include_hidden,
+    )
+    unread = (
+        *missing_xrefs(expansion.missing, table),
+        *unread_entities(expansion.placed, table),
+    )
     drawn = [placed for placed in expansion.placed if placed.kind in DRAWN]
-    seen, fallback = _with_meaning(drawn, table)
-    rough = [(e.verdict.meaning, f) for e in seen for f in features_of(e.placed, 1.0, (0.0, 0.0))]
-    box = _box(feature for _, feature in rough)
-    if box is None:
+    seen, fallback = with_meaning(drawn, table)
+    rough = _in_drawing_units(seen)
+    if not rough:
         raise EmptyPlanError(
             f"'{path.name}' shows nothing in model space that could be a plan; "
             f"{_what_else(expansion)}"
         )
+    near, box, middle, strays = _without_strays(rough)
     size = (box[2] - box[0], box[3] - box[1])
     header = opened.document.header
     guess = estimate(
-        rough,
+        [(entity.verdict.meaning, feature) for entity, feature in near],
         size,
         [placed.entity for placed in expansion.placed if placed.kind not in DRAWN],
         in_feet_and_inches=header.get("$LUNITS", 2) in FEET_AND_INCHES,
     )
-    known = unit_of(header.get("$INSUNITS", 0), options.units, guess, size, path.name)
+    known = unit_of(header.get("$INSUNITS", NO_UNIT), options.units, guess, size, path.name)
     return Survey(
-        path,
-        opened.sha256,
-        opened.document,
-        seen,
-        expansion.hidden,
-        known.unit,
-        box,
-        (
+        path=path,
+        sha256=opened.sha256,
+        document=opened.document,
+        seen=tuple({id(entity): entity for entity, _ in near}.values()),
+        hidden=expansion.hidden,
+        unit=known.unit,
+        box=box,
+        middle=middle,
+        findings=(
             *opened.findings,
             *known.findings,
             *expansion.findings,
             *_hidden(expansion.hidden),
-            *_unread(expansion.placed),
+            *unread,
+            *strays,
             *fallback,
         ),
     )
 
 
-def verdict_of(placed: Placed, table: LayerTable) -> Verdict:
-    """What an entity stands for.
+def _in_drawing_units(seen: Iterable[Seen]) -> list[tuple[Seen, Feature]]:
+    """What is drawn, to measure it before the unit is known."""
+    return [(entity, f) for entity in seen for f in features_of(entity.placed, 1.0, (0.0, 0.0))]
 
-    The layer decides, with two exceptions: what is in a door's block is a door, and where the
-    layer says nothing the name of the innermost block that says something decides.
+
+def _without_strays(
+    rough: Sequence[tuple[Seen, Feature]],
+) -> tuple[
+    list[tuple[Seen, Feature]], tuple[float, float, float, float], Point, tuple[Finding, ...]
+]:
+    """What lies together, its box and its middle, and what is said about the rest.
+
+    Entities farther from the middle than `limits.MAX_COORDINATE` are strays of a slip of the
+    keyboard; kept, they would take the digits that the plan needs.
     """
-    by_block = _by_block(placed.blocks, table)
-    if by_block.meaning is Meaning.DOOR:
-        return by_block
-    by_layer = table.of_layer(placed.layer)
-    return by_block if by_layer.meaning is None else by_layer
-
-
-def _by_block(blocks: Sequence[str], table: LayerTable) -> Verdict:
-    verdicts = (table.of_block(name) for name in reversed(blocks))
-    return next((verdict for verdict in verdicts if verdict.meaning is not None), Verdict())
-
-
-def _with_meaning(
-    drawn: Sequence[Placed], table: LayerTable
-) -> tuple[tuple[Seen, ...], tuple[Finding, ...]]:
-    """Each entity with its meaning; a drawing without any layer of obstacles is all walls."""
-    # a drawing has few layers and blocks, and many entities on each
-    known: dict[tuple[str, tuple[str, ...]], Verdict] = {}
-    for placed in drawn:
-        name = (placed.layer, placed.blocks)
-        if name not in known:
-            known[name] = verdict_of(placed, table)
-    seen = tuple(Seen(placed, known[placed.layer, placed.blocks]) for placed in drawn)
-    telling = set(KINDS) - {Meaning.WINDOW}
-    if any(entity.verdict.meaning in telling for entity in seen):
-        return seen, ()
-    unnamed = [entity for entity in seen if entity.verdict.meaning is None]
-    layers = sorted({entity.placed.layer for entity in unnamed})
-    if not layers:
-        return seen, ()
-    named = ", ".join(f"'{layer}'" for layer in layers[:LISTED])
-    more = f" and {len(layers) - LISTED} more" if len(layers) > LISTED else ""
-    finding = Finding(
-        "all-walls",
-        f"no layer is named as one of obstacles: all {len(unnamed)} entities on {named}{more} "
-        "are taken as walls",
-        "say what the layers are in a file for --layers",
+    boxes = np.array([feature.box() for _, feature in rough])
+    middle = np.median(boxes[:, :2], axis=0)
+    reach = np.abs(boxes - np.tile(middle, 2)).max(axis=1)
+    is_near = reach <= limits.MAX_COORDINATE
+    near = [pair for pair, keeps in zip(rough, is_near, strict=True) if keeps]
+    far = [pair for pair, keeps in zip(rough, is_near, strict=True) if not keeps]
+    left, bottom = boxes[is_near, :2].min(axis=0)
+    right, top = boxes[is_near, 2:].max(axis=0)
+    findings = tuple(
+        Finding(
+            "far-away",
+            f"{entity.placed.kind} lies or reaches more than {limits.MAX_COORDINATE:,.0f} units "
+            "from the rest of the drawing and is not read",
+            "delete it if it is a stray",
+            layer=entity.placed.layer,
+            handle=entity.placed.handle,
+        )
+        for entity, _ in far
     )
-    as_wall = Verdict(Meaning.WALL)
-    return (
-        tuple(replace(e, verdict=as_wall) if e.verdict.meaning is None else e for e in seen),
-        (finding,),
-    )
-
-
-def _box(features: Iterable[Feature]) -> tuple[float, float, float, float] | None:
-    """Left, bottom, right, top of all ends and full circles, in drawing units."""
-    points = [
-        point
-        for feature in features
-        for path in feature.paths
-        for piece in path.pieces
-        for point in _spots(piece)
-    ]
-    if not points:
-        return None
-    left, bottom = np.min(points, axis=0)
-    right, top = np.max(points, axis=0)
-    return float(left), float(bottom), float(right), float(top)
-
-
-def _spots(piece: Piece) -> tuple[Point, ...]:
-    """Points that a piece's box is taken from."""
-    if isinstance(piece, Arc) and piece.is_full:
-        reach_x = math.hypot(piece.u[0], piece.v[0])
-        reach_y = math.hypot(piece.u[1], piece.v[1])
-        x, y = piece.centre
-        return (x - reach_x, y - reach_y), (x + reach_x, y + reach_y)
-    return piece.start, piece.end
+    box = (float(left), float(bottom), float(right), float(top))
+    return near, box, (float(middle[0]), float(middle[1])), findings
 
 
 def _what_else(expansion: Expansion) -> str:
@@ -217,40 +204,3 @@ def _hidden(hidden: Counter[str]) -> Iterable[Finding]:
             "thaw the layer or give --include-hidden if they are on the floor",
             layer=layer,
         )
-
-
-def _unread(placed: Iterable[Placed]) -> Iterable[Finding]:
-    """Types of entity that this reader does not know."""
-    unknown = Counter(
-        (entity.kind, entity.layer)
-        for entity in placed
-        if entity.kind not in DRAWN and entity.kind not in NO_LINEWORK
-    )
-    for (kind, layer), count in unknown.items():
-        yield Finding(
-            "entity-unread",
-            f"{count} {kind} on layer '{layer}' cannot be read",
-            "explode them or export the drawing as lines and polylines",
-            layer=layer,
-        )
-
-
-def features(
-    survey: Survey, frame: Frame, wanted: Iterable[Meaning | None]
-) -> dict[Meaning | None, list[Feature]]:
-    """What the entities of some meanings draw, in millimetres of the frame.
-
-    Raises:
-        DrawingError: If an entity cannot be read.
-        LimitError: If there are too many corners.
-    """
-    found: dict[Meaning | None, list[Feature]] = {meaning: [] for meaning in wanted}
-    n_pieces = 0
-    for entity in survey.seen:
-        if entity.verdict.meaning not in found:
-            continue
-        drawn = features_of(entity.placed, frame.mm_per_unit, frame.origin_mm)
-        found[entity.verdict.meaning].extend(drawn)
-        n_pieces += sum(len(path.pieces) for feature in drawn for path in feature.paths)
-        limits.hold("corners", n_pieces, limits.MAX_VERTICES, "simplify the drawing")
-    return found
