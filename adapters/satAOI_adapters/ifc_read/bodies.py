@@ -218,7 +218,7 @@ class BodyReader:
             return self._by_item(items, matrix, view)
         voids = self._plain_voids(openings, view)
         try:
-            return replace(self._meshed_body(product, items, matrix, why), voids=voids)
+            return replace(self.meshed(product), voids=voids, why_meshed=why)
         except NoBodyError as error:
             uncut = self._by_item(items, matrix, view)
             flaw = f"its openings were not cut: {error}"
@@ -284,12 +284,16 @@ class BodyReader:
             raise NoBodyError("; ".join(failures) or "its body is empty")
         return replace(body, flaws=(*body.flaws, *failures))
 
-    def _meshed_body(
-        self, product: entity_instance, items: list[entity_instance], matrix: FloatArray, why: str
-    ) -> Body:
-        parts = [*items, *(i for o in openings_of(product) for i in body_items(o))]
-        mesh, flaws = self._placed_mesh(product, product.id(), matrix, parts)
-        return Body((), (mesh,), why_meshed=why, flaws=flaws)
+    def meshed(self, product: entity_instance) -> Body:
+        """A product's body as the geometry kernel makes it, its openings cut out.
+
+        Raises:
+            NoBodyError: If the kernel makes nothing of it.
+            PlacementError: If its placement cannot be resolved.
+        """
+        items = [*body_items(product), *(i for o in openings_of(product) for i in body_items(o))]
+        mesh, flaws = self._placed_mesh(product, product.id(), self.matrix(product), items)
+        return Body((), (mesh,), flaws=flaws)
 
     def _placed_mesh(
         self, what: entity_instance, key: int, matrix: FloatArray, parts: list[entity_instance]

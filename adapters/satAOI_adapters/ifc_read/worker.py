@@ -89,6 +89,8 @@ class Worker:
         )
         by_height = options.floor_z is not None and options.storey is None
         storey = None if by_height else chosen_storey(storeys, options.storey)
+        if storey is not None and options.storey is None and len(storeys) > 1:
+            described.findings.append(FindingRecord.of(_only_used(storey)))
         return self._read(model, units, choice, storey, described)
 
     def _read(
@@ -137,6 +139,16 @@ class Worker:
     def _say(self, record: Record) -> None:
         self._out.write(record.model_dump_json() + "\n")
         self._out.flush()
+
+
+def _only_used(storey: Storey) -> Finding:
+    return Finding(
+        "storey-chosen",
+        f"storey '{storey.name}' was read, the only one that holds anything",
+        "choose another with --storey",
+        layer="IfcBuildingStorey",
+        handle=storey.handle,
+    )
 
 
 def _model_record(
