@@ -171,6 +171,8 @@ class Source:
         format: `dxf`, `ifc`, or `memory` for a plan made in Python.
         unit: Key of `units.MM_PER_UNIT`.
         unit_source: How the unit is known: `option`, `header`, `estimate` or `given`.
+        storey: GlobalId of the storey (IFC), or an empty string.
+        height_mm: Height of the floor in the model (IFC); a drawing has none and lies at 0.
     """
 
     path: str = ""
@@ -178,6 +180,8 @@ class Source:
     format: str = "memory"
     unit: str = "mm"
     unit_source: str = "given"
+    storey: str = ""
+    height_mm: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +195,8 @@ class FloorPlan:
         floor: The floor in the plan's frame, closed; holes in it are outside.
         obstacles: What stands on it.
         findings: What the reader skipped, guessed or repaired.
-        floor_source: `layer`, `inferred`, or `given` for a plan made in Python.
+        floor_source: `layer` (DXF); `slab`, `space` or `support` (IFC); `inferred`; or `given`
+            for a plan made in Python.
         frame: Where the plan lies in its drawing.
         source: The file it came from.
         start_mm: Disc centre marked in the drawing as the start, in the plan's frame.

@@ -55,6 +55,9 @@ NEVER_BLOCK: Final = (
 FLOOR_COVERINGS: Final = frozenset({"FLOORING", "MEMBRANE", "INSULATION"})
 """Predefined types of IfcCovering that are the floor, not a thing on it."""
 
+OURS: Final = "SATAOI-"
+"""How the object types of what this program writes begin."""
+
 MAX_DEPTH: Final = 50
 """Parts within parts; deeper is a cycle."""
 
@@ -90,13 +93,18 @@ def _declared(schema: str, name: str) -> str:
 
 def blocks(element: entity_instance, choice: Choice) -> bool:
     """Whether an element stands in the way where it occupies the band."""
-    if any(element.is_a(name) for name in choice.dropped):
+    if any(element.is_a(name) for name in choice.dropped) or is_ours(element):
         return False
     if any(element.is_a(name) for name in choice.added):
         return True
     if element.is_a("IfcCovering"):
         return element.PredefinedType not in FLOOR_COVERINGS
     return not any(element.is_a(name) for name in NEVER_BLOCK)
+
+
+def is_ours(element: entity_instance) -> bool:
+    """Whether this program wrote it: a result is no part of the building."""
+    return bool(str(element.ObjectType or "").startswith(OURS))
 
 
 def kind_of(element: entity_instance) -> Kind:

@@ -140,7 +140,7 @@ def plan_of(answer: Read, source: Source) -> FloorPlan:
         findings=tuple(findings),
         floor_source=answer.floor_source,
         frame=frame,
-        source=source,
+        source=replace(source, storey=answer.storey, height_mm=answer.height_mm),
     )
 
 

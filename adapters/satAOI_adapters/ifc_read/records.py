@@ -156,6 +156,7 @@ class Read(Record):
 
     Attributes:
         model: The model as a whole.
+        storey: GlobalId of the storey, or an empty string.
         origin_mm: What was subtracted from all coordinates.
         floor: Hexadecimal WKB.
         floor_source: As in `FloorPlan`.
@@ -166,6 +167,7 @@ class Read(Record):
 
     type: Literal["read"] = "read"
     model: ModelRecord
+    storey: str
     origin_mm: tuple[float, float]
     floor: str
     floor_source: str

@@ -112,6 +112,7 @@ class Worker:
         )
         return Read(
             model=described,
+            storey="" if storey is None else storey.handle,
             origin_mm=read.origin_mm,
             floor=encoded_region(read.floor),
             floor_source=read.floor_source,
