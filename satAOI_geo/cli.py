@@ -13,7 +13,14 @@ from typing import TYPE_CHECKING, Final, Unpack
 import rich_click as click
 
 from satAOI_geo import __version__
-from satAOI_geo.errors import DrawingError, InputError, LimitError, SatAoiError, StartError
+from satAOI_geo.errors import (
+    DrawingError,
+    InputError,
+    LimitError,
+    NoRouteError,
+    SatAoiError,
+    StartError,
+)
 from satAOI_geo.options import (
     AT,
     EXACT_OUTLINE,
@@ -25,7 +32,9 @@ from satAOI_geo.options import (
     QUESTION,
     QUIET,
     READING,
+    ROUTE_OUTPUT,
     STRICT,
+    TO,
     Outputs,
     Question,
     Reading,
@@ -36,6 +45,7 @@ if TYPE_CHECKING:
     from satAOI_adapters import Choices
     from satAOI_geo.pipeline import Result
     from satAOI_geo.plan import FloorPlan
+    from satAOI_geo.route import Route
     from satAOI_geo.search import Settings
 
 DONE: Final = 0
@@ -150,6 +160,73 @@ def explain(
     return DONE
 
 
+@commands.command()
+@taking(PLAN, TO, ROUTE_OUTPUT, READING, QUESTION, QUIET)
+def route(
+    *,
+    plan: Path,
+    to: tuple[float, float],
+    output: tuple[Path, ...],
+    quiet: bool,
+    **options: Unpack[PlanOptions],
+) -> int:
+    """Find a way for the robot from where it is set down to where it trowels a point.
+
+    satAOI-geo route plan.dxf --to 3200,1500.5 -o route.dxf
+
+    Without --output the figures are printed and nothing is written.
+    """
+    from satAOI_adapters import route_writer_of, write_route
+
+    if options["connectivity"] != "pose":
+        raise InputError("a route is made of motions; leave --connectivity at pose")
+    for path in output:
+        route_writer_of(path)
+    refuse_targets(output, read=[plan, Path(options["robot"]), options["layers"]])
+    result = answer(plan, options, quiet=quiet)
+    found = route_to(result, to)
+    for path in output:
+        write_route(path, result, found)
+    tell_route(result, found, output, quiet=quiet)
+    return DONE
+
+
+def route_to(result: "Result", at: tuple[float, float]) -> "Route":
+    """A way from the start to a point in drawing units.
+
+    Raises:
+        NoRouteError: If there is none; it says why.
+    """
+    from satAOI_geo.explain import explain as sentence_for
+    from satAOI_geo.route import RouteMap
+
+    x_mm, y_mm = result.plan.frame.to_local_mm(at).tolist()
+    try:
+        return RouteMap(result.search).to((x_mm, y_mm))
+    except NoRouteError as error:
+        why = sentence_for(result, (x_mm, y_mm))
+        message = f"no route leads to {at[0]:.12g},{at[1]:.12g}. {why}"
+        raise NoRouteError(message, at_mm=error.at_mm) from error
+
+
+def tell_route(result: "Result", found: "Route", output: tuple[Path, ...], *, quiet: bool) -> None:
+    """Say the findings and a route's figures, the output itself where no other is asked for."""
+    from satAOI_adapters.route_write import lines_of
+    from satAOI_adapters.terminal import say_findings, say_note, write_table
+
+    if not output:
+        write_table(lines_of(found), sys.stdout)
+    if quiet:
+        return
+    say_findings(result.report.findings)
+    if output:
+        write_table(lines_of(found), sys.stderr)
+    else:
+        say_note("no file was written; --output FILE.dxf draws the route into the plan")
+    for path in output:
+        say_note(f"wrote {path}")
+
+
 def answer(
     path: Path, options: PlanOptions, *, exact_outline: bool = False, quiet: bool
 ) -> "Result":
@@ -196,15 +273,17 @@ def settings_of(question: Question, *, exact_outline: bool) -> "Settings":
     )
 
 
-def read(path: Path, options: Reading) -> "FloorPlan":
+def read(path: Path, options: PlanOptions) -> "FloorPlan":
     """Read a plan as the options say."""
     from satAOI_adapters import read_plan
 
-    return read_plan(path, *choices(path, options))
+    return read_plan(path, *choices(path, options, start=options["start"]))
 
 
-def choices(path: Path, options: Reading) -> "Choices":
+def choices(path: Path, options: Reading, *, start: tuple[float, float] | None = None) -> "Choices":
     """What the options say to the reader of the plan's format.
+
+    A start in drawing units tells which of several plans in one drawing is meant.
 
     Raises:
         InputError: If an option was given that belongs to another format.
@@ -222,13 +301,19 @@ def choices(path: Path, options: Reading) -> "Choices":
             band_mm=BAND_MM if options["band"] is None else options["band"],
         )
         return Choices(ifc=ifc)
-    from satAOI_adapters.dxf_read.options import ReadOptions
+    from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM, ReadOptions
 
+    close_gaps_mm = options["close_gaps"]
     dxf = ReadOptions(
         units=options["units"],
         layers=options["layers"],
         encoding=options["encoding"],
         include_hidden=options["include_hidden"],
+        xref_dir=options["xref_dir"],
+        plan=options["plan_number"],
+        region=options["region"],
+        close_gaps_mm=CLOSE_GAPS_MM if close_gaps_mm is None else close_gaps_mm,
+        start=start,
     )
     return Choices(dxf=dxf)
 
@@ -241,14 +326,16 @@ def refuse_options_of_other_formats(path: Path, options: Reading) -> None:
     """
     is_ifc = path.suffix.lower() == IFC
     foreign = ONLY_DXF if is_ifc else ONLY_IFC
+    said = dict(options)
     given = [
-        name
-        for name, value in options.items()
-        if name in foreign and not (value is None or value is False)
+        option
+        for name, option in foreign.items()
+        # a flag that was not given is False; 0 is a value
+        if not (said[name] is None or said[name] is False)
     ]
     if given:
-        option, format_name = f"--{given[0].replace('_', '-')}", "IFC" if is_ifc else "DXF"
-        raise InputError(f"{option} says nothing about a plan in {format_name}; leave it out")
+        format_name = "IFC" if is_ifc else "DXF"
+        raise InputError(f"{given[0]} says nothing about a plan in {format_name}; leave it out")
 
 
 def refuse_early(outputs: Outputs, read: list[Path | None]) -> None:
@@ -259,13 +346,23 @@ def refuse_early(outputs: Outputs, read: list[Path | None]) -> None:
             cannot be a file at all.
     """
     from satAOI_adapters import writer_of
-    from satAOI_adapters.files import refuse_unfit_target
 
     for path in (outputs["output"], outputs["raster"]):
         if path is not None:
             writer_of(path)
+    refuse_targets(files_of(outputs), read)
+
+
+def refuse_targets(files: Sequence[Path], read: list[Path | None]) -> None:
+    """Refuse files that could not be written.
+
+    Raises:
+        InputError: If one is an input, is asked for twice, or cannot be a file at all.
+    """
+    from satAOI_adapters.files import refuse_unfit_target
+
     seen: list[Path] = []
-    for path in files_of(outputs):
+    for path in files:
         refuse_unfit_target(path, [one for one in read if one is not None])
         if path.absolute() in seen:
             raise InputError(f"'{path}' is asked for twice; give each output a name of its own")

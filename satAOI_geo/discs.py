@@ -16,11 +16,10 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from satAOI_geo.plan import BoolArray, FloatArray, IntArray
+from satAOI_geo.runs import roots, unite
 
 TIE = 1e-12
 """Share of a squared radius within which a squared distance counts as equal to it: far more than
@@ -155,13 +154,10 @@ def _linked(nodes: IntArray, begins: FloatArray, ends: FloatArray, spans_rad: Fl
 def _welded(ends: FloatArray) -> tuple[FloatArray, IntArray]:
     """The distinct points among the ends of arcs, and the number of each end's point."""
     pairs = cKDTree(ends, balanced_tree=False).query_pairs(WELD, output_type="ndarray")
-    graph = coo_array(
-        (np.ones(len(pairs), dtype=np.bool_), (pairs[:, 0], pairs[:, 1])),
-        shape=(len(ends), len(ends)),
-    )
-    _, labels = connected_components(graph, directed=False)
-    _, representatives = np.unique(labels, return_index=True)
-    return ends[representatives], labels.astype(np.int64)
+    parents = np.arange(len(ends), dtype=np.int32)
+    unite(parents, pairs.astype(np.int32))
+    representatives, labels = np.unique(roots(parents), return_inverse=True)
+    return ends[representatives], labels
 
 
 @numba.njit(nogil=True, cache=True)

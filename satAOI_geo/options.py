@@ -44,6 +44,20 @@ def point(
     return x, y
 
 
+def rectangle(
+    context: click.Context, parameter: click.Parameter, text: str | None
+) -> tuple[float, float, float, float] | None:
+    """The four numbers of a rectangle written `LEFT,BOTTOM,RIGHT,TOP`."""
+    if text is None:
+        return None
+    try:
+        left, bottom, right, top = (float(number) for number in text.split(","))
+    except ValueError as error:
+        message = f"'{text}' is not four numbers with commas, as in 0,0,12000,9000"
+        raise click.BadParameter(message, ctx=context, param=parameter) from error
+    return left, bottom, right, top
+
+
 def direction(context: click.Context, parameter: click.Parameter, text: str | None) -> float | None:
     """The lattice's direction in degrees; None to find it."""
     if text is None or text == "auto":
@@ -101,13 +115,25 @@ class Reading(TypedDict):
     layers: Path | None
     encoding: str | None
     include_hidden: bool
+    xref_dir: Path | None
+    plan_number: int | None
+    region: tuple[float, float, float, float] | None
+    close_gaps: float | None
     storey: str | None
     floor_z: float | None
     band: float | None
 
 
-ONLY_DXF: Final = ("layers", "encoding", "include_hidden")
-ONLY_IFC: Final = ("storey", "floor_z", "band")
+ONLY_DXF: Final = {
+    "layers": "--layers",
+    "encoding": "--encoding",
+    "include_hidden": "--include-hidden",
+    "xref_dir": "--xref-dir",
+    "plan_number": "--plan",
+    "region": "--region",
+    "close_gaps": "--close-gaps",
+}
+ONLY_IFC: Final = {"storey": "--storey", "floor_z": "--floor-z", "band": "--band"}
 
 READING: Final[Group] = (
     click.option(
@@ -137,6 +163,40 @@ READING: Final[Group] = (
         is_flag=True,
         panel="The plan",
         help="DXF: read layers that are frozen or switched off, too.",
+    ),
+    click.option(
+        "--xref-dir",
+        metavar="FOLDER",
+        type=FILE,
+        panel="The plan",
+        help="DXF: folder in which external references are looked for, e.g. --xref-dir refs; "
+        "without it none is followed.",
+    ),
+    click.option(
+        "--plan",
+        "plan_number",
+        metavar="N",
+        type=int,
+        panel="The plan",
+        help="DXF: which of several plans in one drawing, e.g. --plan 2; satAOI-geo inspect "
+        "lists them.",
+    ),
+    click.option(
+        "--region",
+        metavar="LEFT,BOTTOM,RIGHT,TOP",
+        callback=rectangle,
+        panel="The plan",
+        help="DXF: the part of the drawing that is read, in drawing units, "
+        "e.g. --region 0,0,12000,9000",
+    ),
+    click.option(
+        "--close-gaps",
+        metavar="MM",
+        type=float,
+        show_default="1",
+        panel="The plan",
+        help="DXF: line ends this far apart are joined where walls and outlines are closed, "
+        "e.g. --close-gaps 15",
     ),
     click.option(
         "--storey",
@@ -267,6 +327,29 @@ STRICT: Final[Group] = (
 QUIET: Final[Group] = (click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors."),)
 
 JSON: Final[Group] = (click.option("--json", is_flag=True, help="Write JSON rather than tables."),)
+
+TO: Final[Group] = (
+    click.option(
+        "--to",
+        metavar=POINT,
+        required=True,
+        callback=point,
+        help="The point to trowel, in drawing units, e.g. --to 3200,1500.5",
+    ),
+)
+
+ROUTE_OUTPUT: Final[Group] = (
+    click.option(
+        "-o",
+        "--output",
+        metavar="FILE.dxf|.json",
+        type=FILE,
+        multiple=True,
+        panel="Outputs",
+        help="Draw the robot on its way into a copy of the plan, e.g. --output route.dxf, or "
+        "write all its poses; may be given twice.",
+    ),
+)
 
 AT: Final[Group] = (
     click.option(

@@ -113,11 +113,9 @@ def unreached(
     covered = {reason: _region(one) for reason, one in zip(wider, areas, strict=True)}
     blockers = _Blockers(plan)
     broad = _opened(rest, NARROW_CELLS * lattice.step_mm)
-    pieces = [
-        (reason, piece)
-        for part in polygons_in([broad])
-        for reason, piece in _split(part, covered, lattice.step_mm)
-    ]
+    parts = polygons_in([broad])
+    split = run_threads(lambda k: list(_split(parts[k], covered, lattice.step_mm)), len(parts))
+    pieces = [one for of_a_part in split for one in of_a_part]
     crumb_mm2 = lattice.step_mm**2
     patches = [blockers.patch(piece, reason) for reason, piece in pieces if piece.area >= crumb_mm2]
     patches.sort(key=lambda patch: (-patch.area_mm2, patch.label_mm))

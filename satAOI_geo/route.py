@@ -7,6 +7,7 @@ states in a row are joined by one move whose whole sweep is free, and every move
 
 import math
 from dataclasses import dataclass
+from enum import StrEnum
 from itertools import pairwise
 
 import numpy as np
@@ -22,6 +23,19 @@ from satAOI_geo.robot import Pose
 from satAOI_geo.search import Search
 
 
+class MoveKind(StrEnum):
+    """What leads from a state to the next."""
+
+    STEP = "step"
+    """The whole robot shifts to a neighbouring node."""
+    TURN = "turn"
+    """The whole robot turns about the disc's centre."""
+    SWING = "swing"
+    """The vehicle turns about the arm's pivot."""
+    ORBIT = "orbit"
+    """The arm turns about the disc's centre, the vehicle keeps its heading."""
+
+
 @dataclass(frozen=True, slots=True)
 class Route:
     """A way through free poses.
@@ -29,10 +43,12 @@ class Route:
     Attributes:
         lattice: Nodes and directions.
         states: Where the robot stands, one move from each to the next.
+        to_mm: The point that the disc covers at the last of them, in the plan's frame.
     """
 
     lattice: Lattice
     states: tuple[State, ...]
+    to_mm: tuple[float, float]
 
     def poses(self) -> list[Pose]:
         """The poses of the states, a1 running on past a full turn where the robot does."""
@@ -46,6 +62,10 @@ class Route:
             a2_rad = pose.a2_rad + turn_rad * round((before_a2_rad - pose.a2_rad) / turn_rad)
             found.append(Pose(pose.x_mm, pose.y_mm, a1_rad, a2_rad))
         return found
+
+    def moves(self) -> list[MoveKind]:
+        """What leads from each state to the next: one fewer than there are states."""
+        return [_kind(a, b) for a, b in pairwise(self.states)]
 
     @property
     def length_mm(self) -> float:
@@ -111,7 +131,7 @@ class RouteMap:
             state = self._state(next_run, column)
             states.append(state)
         states.extend(_walk(state, min(max(state.ix, int(begin[goal])), int(end[goal]))))
-        return Route(self._search.lattice, tuple(states))
+        return Route(self._search.lattice, tuple(states), at_mm)
 
     def _links(self) -> npt.NDArray[np.int64]:
         """What links the component's runs, both ways: a run, another, a column; shape (n, 3)."""
@@ -157,6 +177,15 @@ class RouteMap:
         number = int(self._runs[run])
         pose = int(np.searchsorted(runs.first[:, :, 0].ravel(), number, side="right")) - 1
         return State(int(runs.row[number]), ix, *divmod(pose, runs.first.shape[1]))
+
+
+def _kind(a: State, b: State) -> MoveKind:
+    """The one move that leads from a state to another."""
+    if (a.iy, a.ix) != (b.iy, b.ix):
+        return MoveKind.STEP
+    if a.swing == b.swing:
+        return MoveKind.TURN
+    return MoveKind.SWING if a.a1 == b.a1 else MoveKind.ORBIT
 
 
 def _walk(state: State, column: int) -> list[State]:

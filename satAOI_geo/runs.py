@@ -100,12 +100,12 @@ def links(
 
 
 def unite(parents: Int32Array, pairs: Int32Array) -> None:
-    """Join linked runs, shape (n, 3), in the union-find forest `parents`, shape (n_runs,)."""
+    """Join pairs, the first two columns of (n, 2 or 3), in the forest `parents`, shape (m,)."""
     _unite(parents, pairs)
 
 
 def roots(parents: Int32Array) -> Int32Array:
-    """The lowest run of each run's component, shape (n_runs,)."""
+    """The lowest member of each one's component, shape (m,); `parents` becomes the answer."""
     _flatten(parents)
     return parents
 
