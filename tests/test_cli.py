@@ -143,6 +143,27 @@ def test_the_start_is_in_drawing_units(tmp_path: Path, capsys: pytest.CaptureFix
     assert start["xy_mm"] == pytest.approx([-395, 1205], abs=10)
 
 
+def test_of_several_plans_the_one_that_is_named_is_read(
+    room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    document = ezdxf.readfile(room)
+    outline = [(20_000, 0), (25_000, 0), (25_000, 5000), (20_000, 5000)]
+    document.modelspace().add_lwpolyline(outline, close=True, dxfattribs={"layer": "FLOOR"})
+    document.save()
+    coarse = (room, "--step", 100)
+    floors_m2 = {
+        figures(capsys, *coarse, *choice)["floor"]["area_m2"]
+        for choice in (
+            ("--region", "19000,-1000,26000,6000"),
+            ("--start", "22500,2500"),
+        )
+    }
+    assert floors_m2 == {25}
+    assert {
+        figures(capsys, *coarse, "--plan", number)["floor"]["area_m2"] for number in (1, 2)
+    } == {16, 25}
+
+
 def test_the_unit_that_is_given_goes_before_the_headers(
     room: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -192,6 +213,8 @@ def test_strict_tells_findings_by_its_exit_code(
         (["--clearance", "-1"], 2, "clearance"),
         (["--storey", "2"], 2, "--storey says nothing about a plan in DXF"),
         (["--floor-z", "0"], 2, "--floor-z says nothing about a plan in DXF"),
+        (["--region", "1,2,3"], 2, "'1,2,3' is not four numbers with commas"),
+        (["--plan", "9"], 2, "there is no plan 9"),
         (["--units", "parsec"], 2, "'parsec' is not one of"),
         (["--robot", "r2d2"], 2, "no robot 'r2d2'"),
         (["--layers", "none.toml"], 2, "none.toml"),

@@ -87,7 +87,7 @@ def test_without_any_unit_the_error_shows_the_sizes(drawing: Path) -> None:
 
 
 def test_the_tables_have_a_line_a_layer(drawing: Path) -> None:
-    facts, layers = inspect_write.tables_of(inspected(drawing))
+    facts, _, layers = inspect_write.tables_of(inspected(drawing))
     assert ("size", "4.00 × 3.00 m") in facts
     assert [row[:3] for row in layers[1:]] == [
         ("FURNITURE", "not read", "unknown"),
@@ -95,6 +95,16 @@ def test_the_tables_have_a_line_a_layer(drawing: Path) -> None:
         ("Zeug", "-", "unknown"),
     ]
     assert layers[1][-1] == "1 hidden"
+
+
+def test_plans_are_numbered_with_their_corners(drawing: Path) -> None:
+    document = ezdxf.readfile(drawing)
+    outline = [(20, 0), (24, 0), (24, 3), (20, 3)]
+    document.modelspace().add_lwpolyline(outline, close=True, dxfattribs={"layer": "WALL"})
+    document.save()
+    found = inspected(drawing).plans
+    assert [plan.number for plan in found] == [1, 2]
+    assert {plan.bounds for plan in found} == {(1, 1, 5, 4), (20, 0, 24, 3)}
 
 
 def test_the_json_holds_the_same(drawing: Path) -> None:

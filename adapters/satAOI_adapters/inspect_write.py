@@ -23,9 +23,9 @@ def json_of(inspection: "DxfInspection | IfcInspection") -> str:
 
 
 def tables_of(inspection: "DxfInspection | IfcInspection") -> list[Table]:
-    """The inspection as tables: facts first, then layers or storeys."""
+    """The inspection as tables: facts first, then plans and layers, or storeys and classes."""
     if isinstance(inspection, DxfInspection):
-        return [_drawing(inspection), _layers(inspection)]
+        return [_drawing(inspection), _plans(inspection), _layers(inspection)]
     return [_model(inspection), _storeys(inspection), _classes(inspection)]
 
 
@@ -40,6 +40,11 @@ def _drawing(inspection: DxfInspection) -> Table:
         ("from", f"{left:.10g},{bottom:.10g} in drawing units"),
         ("to", f"{right:.10g},{top:.10g}"),
     ]
+
+
+def _plans(inspection: DxfInspection) -> Table:
+    corners = [(str(plan.number), *(f"{x:.10g}" for x in plan.bounds)) for plan in inspection.plans]
+    return [("plan", "left", "bottom", "right", "top"), *corners]
 
 
 def _layers(inspection: DxfInspection) -> Table:

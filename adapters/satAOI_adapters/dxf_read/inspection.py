@@ -6,10 +6,11 @@ from pathlib import Path
 
 from satAOI_adapters.dxf_read.entities import features_of
 from satAOI_adapters.dxf_read.options import ReadOptions
+from satAOI_adapters.dxf_read.plans import clusters
 from satAOI_adapters.dxf_read.shapes import middle_line
-from satAOI_adapters.dxf_read.survey import survey
-from satAOI_adapters.layers import Certainty, Meaning, Verdict
-from satAOI_geo.plan import Finding, Source
+from satAOI_adapters.dxf_read.survey import Survey, survey
+from satAOI_adapters.layers import KINDS, Certainty, Meaning, Verdict
+from satAOI_geo.plan import Finding, Frame, Source
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +37,19 @@ class LayerFigures:
 
 
 @dataclass(frozen=True, slots=True)
+class PlanFigures:
+    """A part of the drawing that may be a plan.
+
+    Attributes:
+        number: For `--plan`; 1 is the likeliest and is read if nothing is said.
+        bounds: Left, bottom, right, top in drawing units.
+    """
+
+    number: int
+    bounds: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
 class Inspection:
     """How a drawing is read.
 
@@ -44,6 +58,7 @@ class Inspection:
         version: Of its format, for example AC1024.
         bounds: Left, bottom, right, top of what is drawn, in drawing units.
         size_mm: Width and height of it.
+        plans: Parts that may be plans, the likeliest first.
         layers: By name; a layer whose blocks are read differently has several.
         findings: What was skipped, guessed or repaired.
     """
@@ -52,6 +67,7 @@ class Inspection:
     version: str
     bounds: tuple[float, float, float, float]
     size_mm: tuple[float, float]
+    plans: tuple[PlanFigures, ...]
     layers: tuple[LayerFigures, ...]
     findings: tuple[Finding, ...]
 
@@ -91,6 +107,7 @@ def inspect(path: Path, options: ReadOptions) -> Inspection:
         version=drawing.document.dxfversion,
         bounds=drawing.box,
         size_mm=((right - left) * drawing.unit.mm, (top - bottom) * drawing.unit.mm),
+        plans=_plans(drawing, frame),
         layers=tuple(
             LayerFigures(
                 layer=layer,
@@ -105,6 +122,24 @@ def inspect(path: Path, options: ReadOptions) -> Inspection:
         ),
         findings=drawing.findings,
     )
+
+
+def _plans(drawing: Survey, frame: Frame) -> tuple[PlanFigures, ...]:
+    """The parts that may be plans, numbered as for `--plan`."""
+    found = clusters(drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR)))
+    return tuple(
+        PlanFigures(number, _in_drawing(cluster.bounds_mm, frame))
+        for number, cluster in enumerate(found, start=1)
+    )
+
+
+def _in_drawing(
+    bounds_mm: tuple[float, float, float, float], frame: Frame
+) -> tuple[float, float, float, float]:
+    """Bounds in drawing units."""
+    left, bottom = frame.to_drawing(bounds_mm[:2]).tolist()
+    right, top = frame.to_drawing(bounds_mm[2:]).tolist()
+    return left, bottom, right, top
 
 
 def _by_layer(item: tuple[tuple[str, Verdict], _Tally]) -> tuple[str, str, str]:

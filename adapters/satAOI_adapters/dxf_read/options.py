@@ -2,6 +2,10 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
+
+CLOSE_GAPS_MM: Final = 1.0
+"""Line ends this close are meant to meet: no drawing is coarser, no opening finer."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,4 +33,4 @@ class ReadOptions:
     plan: int | None = None
     region: tuple[float, float, float, float] | None = None
     start: tuple[float, float] | None = None
-    close_gaps_mm: float = 1.0
+    close_gaps_mm: float = CLOSE_GAPS_MM
