@@ -53,9 +53,9 @@ def assert_same_sets(
 
 SMALL = [
     # seed of the plan, step, directions, clearance
-    (11, 120.0, 8, 0.0),
+    (11, 140.0, 8, 0.0),
     (12, 100.0, 8, 0.0),
-    (13, 120.0, 12, 0.0),
+    (13, 160.0, 12, 0.0),
     (14, 90.0, 8, 35.0),
     (15, 130.0, 12, 0.0),
     (16, 60.0, 4, 0.0),
@@ -63,9 +63,9 @@ SMALL = [
     (18, 150.0, 12, 0.0),
     (19, 120.0, 8, 0.0),
     (20, 100.0, 4, 0.0),
-    (21, 140.0, 12, 0.0),
+    (21, 160.0, 12, 0.0),
     (22, 120.0, 8, 0.0),
-    (23, 180.0, 16, 0.0),
+    (23, 200.0, 16, 0.0),
     (24, 130.0, 8, 0.0),
     (25, 70.0, 4, 35.0),
     (26, 150.0, 12, 0.0),
@@ -322,8 +322,11 @@ def test_every_set_lies_in_its_box_and_touches_its_sides(seed: int) -> None:
     discs = DiscComponents.of(space.free_nodes())
     for sets in (discs, poses):
         for label, box_of in enumerate(sets.boxes):
-            rows, columns = np.nonzero(sets.nodes(label))
-            assert box_of.tolist() == [rows.min(), columns.min(), rows.max(), columns.max()]
+            nodes = sets.nodes(label)
+            iy, ix = np.nonzero(nodes)
+            assert box_of.tolist() == [iy.min(), ix.min(), iy.max(), ix.max()]
+            window = slice(iy.min(), iy.max() + 1), slice(ix.min(), ix.max() + 1)
+            assert np.array_equal(sets.nodes(label, *window), nodes[window])
 
 
 @pytest.mark.parametrize("seed", [51, 52])
