@@ -1,6 +1,6 @@
 """Everything that touches the world: a module a format and direction, listed in tables.
 
-A new format is one module and one line in `READERS`, `INSPECTORS` or `WRITERS`.
+A new format is one module and one line in `READERS`, `INSPECTORS`, `WRITERS` or `ROUTE_WRITERS`.
 """
 
 from __future__ import annotations
@@ -19,20 +19,25 @@ if TYPE_CHECKING:
     from satAOI_adapters.ifc_read import Inspection as IfcInspection
     from satAOI_geo.pipeline import Result
     from satAOI_geo.plan import FloorPlan
+    from satAOI_geo.route import Route
 
     Inspection: TypeAlias = DxfInspection | IfcInspection
     Reader: TypeAlias = Callable[[Path, "Choices"], FloorPlan]
     Inspector: TypeAlias = Callable[[Path, "Choices"], Inspection]
     Writer: TypeAlias = Callable[[Path, Result], None]
+    RouteWriter: TypeAlias = Callable[[Path, Result, Route], None]
 
 __all__ = [
     "INSPECTORS",
     "READERS",
+    "ROUTE_WRITERS",
     "WRITERS",
     "Choices",
     "inspect_plan",
     "read_plan",
+    "route_writer_of",
     "write_aoi",
+    "write_route",
     "writer_of",
 ]
 
@@ -90,6 +95,25 @@ def writer_of(path: Path) -> Writer:
     return _by_suffix(WRITERS, path, "write")
 
 
+def write_route(path: Path | str, result: Result, route: Route) -> None:
+    """Write a route, found on a result's search, to a file of any known format.
+
+    Raises:
+        InputError: If no writer knows the file's suffix, or the file cannot be written.
+    """
+    path = Path(path)
+    route_writer_of(path)(path, result, route)
+
+
+def route_writer_of(path: Path) -> RouteWriter:
+    """The function that writes routes to files of this name.
+
+    Raises:
+        InputError: If no writer knows the file's suffix.
+    """
+    return _by_suffix(ROUTE_WRITERS, path, "write")
+
+
 def _read_dxf(path: Path, choices: Choices) -> FloorPlan:
     from satAOI_adapters import dxf_read
 
@@ -132,6 +156,18 @@ def _write_npz(path: Path, result: Result) -> None:
     raster_write.write_npz(path, result)
 
 
+def _write_route_dxf(path: Path, result: Result, route: Route) -> None:
+    from satAOI_adapters.dxf_write import route as route_drawing
+
+    route_drawing.write(path, result, route)
+
+
+def _write_route_json(path: Path, result: Result, route: Route) -> None:
+    from satAOI_adapters import route_write
+
+    route_write.write(path, result, route)
+
+
 READERS: Final[dict[str, Reader]] = {".dxf": _read_dxf, ".ifc": _read_ifc}
 """Suffix, in lower case, to the function that reads such a file."""
 
@@ -140,6 +176,12 @@ INSPECTORS: Final[dict[str, Inspector]] = {".dxf": _inspect_dxf, ".ifc": _inspec
 
 WRITERS: Final[dict[str, Writer]] = {".dxf": _write_dxf, ".png": _write_png, ".npz": _write_npz}
 """Suffix, in lower case, to the function that writes such a file."""
+
+ROUTE_WRITERS: Final[dict[str, RouteWriter]] = {
+    ".dxf": _write_route_dxf,
+    ".json": _write_route_json,
+}
+"""Suffix, in lower case, to the function that writes a route to such a file."""
 
 HINTS: Final = {
     ".dwg": "; save the drawing as DXF (R2010 or newer) in the program it was made with",

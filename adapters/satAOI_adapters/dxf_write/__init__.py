@@ -19,7 +19,8 @@ it stands for; a record SATAOI in the root dictionary holds the settings of the 
 from pathlib import Path
 
 from satAOI_adapters.dxf_write.document import base_document, file_bytes
-from satAOI_adapters.dxf_write.layers import add_layers
+from satAOI_adapters.dxf_write.layers import STYLES, add_layers
+from satAOI_adapters.dxf_write.legend import note_rows
 from satAOI_adapters.dxf_write.metadata import add_appid, record_run
 from satAOI_adapters.dxf_write.note import draw_note
 from satAOI_adapters.dxf_write.place import entity_bounds, floor_bounds, text_height
@@ -54,7 +55,7 @@ def write(path: Path, result: Result) -> None:
     inputs = [Path(source.path)] if source.path else []
     refuse_unfit_target(path, inputs)
     document = base_document(result.plan)
-    add_layers(document)
+    add_layers(document, STYLES)
     add_appid(document)
     space = document.modelspace()
     # before anything is drawn into it: what comes on top lies within the plan
@@ -64,7 +65,7 @@ def write(path: Path, result: Result) -> None:
     hatches = draw_area(space, result)
     hatches += draw_unreached(space, result, text_height(floor_bounds(result.plan)))
     draw_start(space, result)
-    draw_note(space, result, taken)
+    draw_note(space, result.plan, note_rows(result), taken)
     send_to_back(document, hatches)
     record_run(document, result)
     data = file_bytes(document)

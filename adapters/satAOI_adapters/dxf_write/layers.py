@@ -1,5 +1,6 @@
 """The layers and colours of what is drawn; the only place they are chosen."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
@@ -47,7 +48,14 @@ START: Final = Style("SATAOI-START", 6, 35, "disc of the robot where it starts")
 OBSTACLE: Final = Style("SATAOI-OBSTACLE", 8, 25, "floor and obstacles as they were read")
 NOTE: Final = Style("SATAOI-NOTE", 7, 18, "legend and figures")
 
+ROUTE: Final = Style("SATAOI-ROUTE", 160, 70, "way of the disc's centre and the point it leads to")
+ROBOT: Final = Style("SATAOI-ROBOT", 94, 18, "the robot on its way, at intervals")
+
 STYLES: Final = (AOI, EDGE, UNREACHED, UPPER, ZONE, START, OBSTACLE, NOTE)
+"""What an area of interest is drawn in."""
+
+ROUTE_STYLES: Final = (ROBOT, ROUTE, START, NOTE)
+"""What a route is drawn in."""
 
 TRANSPARENCY: Final = 0.5
 """Of fills, in programs that know it; the others show the walls because fills come first."""
@@ -69,11 +77,11 @@ KIND_COLOURS: Final = {
 """Colour index of an obstacle's outline: red, blue, violet, orange, teal, olive."""
 
 
-def add_layers(document: Drawing) -> None:
+def add_layers(document: Drawing, styles: Iterable[Style]) -> None:
     """Create text style and layers, or give those of an earlier run their looks again."""
     if TEXT_STYLE not in document.styles:
         document.styles.add(TEXT_STYLE, font=FONT)
-    for style in STYLES:
+    for style in styles:
         layer = (
             document.layers.get(style.name)
             if style.name in document.layers

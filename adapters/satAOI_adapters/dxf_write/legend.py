@@ -73,6 +73,13 @@ def note_rows(result: Result) -> list[Row]:
     ]
 
 
+def point_in_words(at_mm: tuple[float, float], mm_per_unit: float, unit: str) -> str:
+    """A point of the drawing in its own unit, to a tenth of a millimetre and no more digits."""
+    digits = max(0, 1 + round(math.log10(mm_per_unit)))
+    x, y = (round(mm / mm_per_unit, digits) for mm in at_mm)
+    return f"{x:.12g}, {y:.12g} {unit}"
+
+
 def _area_rows(report: Report) -> list[Row]:
     aoi, disc = report.aoi, report.disc_connected
     area = f"{aoi.area_m2:.2f} m² = {aoi.percent_of_free:.1f} % of the free floor"
@@ -133,15 +140,11 @@ def _floor_rows(report: Report, result: Result) -> list[Row]:
 
 def _run_rows(report: Report, frame: Frame) -> list[Row]:
     source, robot, lattice = report.input, report.robot, report.lattice
-    # a tenth of a millimetre and no more digits than that takes in the drawing's unit
-    digits = max(0, 1 + round(math.log10(frame.mm_per_unit)))
-    x, y = (round(mm / frame.mm_per_unit, digits) for mm in report.start.xy_mm)
+    at = point_in_words(report.start.xy_mm, frame.mm_per_unit, source.unit)
     start = Swatch(START.colour, START.lineweight, is_round=True)
     return [
         Row("Run"),
-        Row(
-            "Start of the disc", f"{x:.12g}, {y:.12g} {source.unit} ({report.start.source})", start
-        ),
+        Row("Start of the disc", f"{at} ({report.start.source})", start),
         Row("Robot", f"{robot.name}, disc radius {robot.disc_radius_mm:g} mm"),
         Row("Clearance", f"{robot.clearance_mm:g} mm"),
         Row(

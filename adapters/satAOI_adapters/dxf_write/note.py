@@ -1,4 +1,4 @@
-"""The note beside the plan: a legend with swatches, and the figures of the run.
+"""The note beside the plan: a legend with swatches, and figures.
 
 Every row is a text of its own at a place of its own, so that the columns stay in line whatever
 font and line spacing a program puts in place of ours.
@@ -11,7 +11,7 @@ from ezdxf.lldxf.const import MTEXT_MIDDLE_LEFT
 from shapely.geometry import Polygon
 
 from satAOI_adapters.dxf_write.layers import NOTE, TEXT_STYLE, TRANSPARENCY
-from satAOI_adapters.dxf_write.legend import Row, Swatch, note_rows
+from satAOI_adapters.dxf_write.legend import Row, Swatch
 from satAOI_adapters.dxf_write.metadata import attach, one_line
 from satAOI_adapters.dxf_write.pen import Pen, outline_of
 from satAOI_adapters.dxf_write.place import (
@@ -20,8 +20,7 @@ from satAOI_adapters.dxf_write.place import (
     free_place,
     text_height,
 )
-from satAOI_geo.pipeline import Result
-from satAOI_geo.plan import FloatArray, Frame
+from satAOI_geo.plan import FloatArray, FloorPlan, Frame
 
 # The layout, in text heights.
 ROW: Final = 1.9
@@ -41,24 +40,24 @@ LONGEST_VALUE: Final = 48
 """Characters of a value; a longer name of a file or of a robot is cut."""
 
 
-def draw_note(space: Modelspace, result: Result, taken: FloatArray) -> None:
+def draw_note(space: Modelspace, plan: FloorPlan, rows: list[Row], taken: FloatArray) -> None:
     """Draw the note beside the plan.
 
     Args:
         space: Where to draw.
-        result: What to tell.
+        plan: The plan to stand beside.
+        rows: What to tell.
         taken: Bounds of what to keep clear of, shape (n, 4), in drawing units.
     """
-    rows = note_rows(result)
-    plan = floor_bounds(result.plan)
-    height = text_height(plan)
+    floor = floor_bounds(plan)
+    height = text_height(floor)
     value_at = LABEL_AT + CHARACTER * max(len(row.label) for row in rows if row.value) + 1
     width = value_at + CHARACTER * max(len(row.value) for row in rows)
     size = (
         height * (width + 2 * MARGIN),
         height * (sum(_pitch(row) for row in rows) + 2 * MARGIN),
     )
-    within = free_place(plan, size, gap=GAP * height, taken=taken)
+    within = free_place(floor, size, gap=GAP * height, taken=taken)
     Pen(space, Frame(), NOTE.name).ring(corners_of(within))
     x, y = within[0] + MARGIN * height, within[3] - MARGIN * height
     for row in rows:
