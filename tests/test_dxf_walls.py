@@ -60,7 +60,15 @@ def test_inferred_floor_runs_along_the_outer_faces_and_across_the_opening(
 
 def test_opening_wider_than_the_widest_door_lets_the_floor_leak(tmp_path: Path) -> None:
     with pytest.raises(EmptyPlanError, match="layer FLOOR"):
-        plan_of(house(opening_mm=2600.0), tmp_path)
+        plan_of(house(opening_mm=2600.0, layer="0"), tmp_path)
+
+
+def test_floor_that_nothing_encloses_is_guessed_between_named_walls_and_said(
+    tmp_path: Path,
+) -> None:
+    plan = plan_of(house(opening_mm=2600.0), tmp_path)
+    assert plan.floor.area == OUTSIDE.area
+    assert "floor-guessed" in codes(plan)
 
 
 def test_space_between_wall_faces_is_wall_and_the_room_is_not(tmp_path: Path) -> None:
@@ -281,3 +289,41 @@ def test_courtyard_arc_wall_is_filled_between_its_faces(tmp_path: Path) -> None:
     ring_mm2 = math.pi * (3200**2 - 3000**2) / 4
     wall_mm2 = plan_of(document, tmp_path).obstacle_region().area
     assert 0 <= wall_mm2 - ring_mm2 < 0.02 * math.pi * 3200
+
+
+@pytest.mark.parametrize("leaf", ["line", "rectangle"])
+def test_door_drawn_among_walls_is_left_out_and_the_walls_stay(leaf: str, tmp_path: Path) -> None:
+    document = house(opening_mm=900.0)
+    space = document.modelspace()
+    on = {"layer": "WALL"}
+    bare = plan_of(document, tmp_path)
+    space.add_arc((2000, 200), 900, 0, 90, dxfattribs=on)
+    if leaf == "line":
+        space.add_line((2000, 200), (2000, 1100), dxfattribs=on)
+    else:
+        rectangle(space, 2000, 200, 2040, 1100, layer="WALL")
+    plan = plan_of(document, tmp_path)
+    assert [o.shape for o in plan.obstacles] == [o.shape for o in bare.obstacles]
+    assert "door-among-walls" in codes(plan)
+
+
+def test_quarter_round_wall_without_a_leaf_stays(tmp_path: Path) -> None:
+    document = drawing()
+    document.modelspace().add_arc((2000, 2000), 900, 0, 90, dxfattribs={"layer": "WALL"})
+    assert len(standing(plan_of(document, tmp_path), "WALL")) == 1
+
+
+def test_gap_is_closed_on_request(tmp_path: Path) -> None:
+    document = drawing()
+    document.modelspace().add_lwpolyline(
+        [(0, 12), (0, 300), (300, 300), (300, 0), (0, 0)], dxfattribs={"layer": "COLUMN"}
+    )
+    plan = plan_of(document, tmp_path, close_gaps_mm=15.0)
+    assert plan.obstacle_region().area == 300 * 300
+
+
+def test_outline_of_a_room_is_a_wall_face_where_no_layer_of_walls_exists(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    rectangle(document.modelspace(), 0, 0, 6400, 4400, layer="XYZ")
+    rectangle(document.modelspace(), 200, 200, 6200, 4200, layer="ROOM")
+    assert plan_of(document, tmp_path).free_region().area == 6000 * 4000

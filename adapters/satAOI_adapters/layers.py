@@ -44,6 +44,7 @@ class Meaning(StrEnum):
     WINDOW = "window"
     DOOR = "door"
     FLOOR = "floor"
+    ROOM = "room"
     IGNORE = "ignore"
 
 

@@ -1,11 +1,13 @@
 """What is drawn on door layers: no obstacle, but some of it says where walls or the floor end.
 
-Leaves and swings never stop the robot. Lines that span an opening close the floor there. And
-some offices draw whole partitions on the layer of their doors; these are walls.
+Leaves and swings never stop the robot, also where they are drawn among walls or windows: an arc
+and a line from its centre to its end tell them. Lines that span an opening close the floor there.
+And some offices draw whole partitions on the layer of their doors; these are walls.
 """
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -15,11 +17,13 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 from shapely.geometry import LineString
+from shapely.geometry import Point as Spot
 from shapely.geometry.base import BaseGeometry
 
-from satAOI_adapters.dxf_read.curves import Line
+from satAOI_adapters.dxf_read.curves import Arc, Line, Path
 from satAOI_adapters.dxf_read.entities import Feature
-from satAOI_adapters.dxf_read.linework import GAP_MM, PARALLEL
+from satAOI_adapters.dxf_read.linework import PARALLEL
+from satAOI_adapters.dxf_read.terms import GAP_MM
 from satAOI_geo.plan import Finding
 
 JAMB_MM: Final = 300.0
@@ -27,6 +31,15 @@ JAMB_MM: Final = 300.0
 
 LEAF_MM: Final = 1300.0
 """No door leaf is longer."""
+
+LEAST_LEAF_MM: Final = 400.0
+"""No leaf of a door that people go through is shorter."""
+
+LEAF_SLACK_MM: Final = 60.0
+"""A leaf may start and end this far from its arc's centre and its arc: it has a thickness."""
+
+WIDEST_RAD: Final = math.radians(190)
+"""Doors are drawn open by up to half a turn."""
 
 PARTITION_MM: Final = 2500.0
 """A single straight line longer than this, with another beside it, is the face of a wall."""
@@ -59,6 +72,79 @@ def partitions(doors: Sequence[Feature], walls: Sequence[BaseGeometry]) -> list[
     is_wall = (long_sides >= 2) | (np.bincount(chain, faces) > 0)
     found = {id(f): f for (f, _), own in zip(loose, chain, strict=True) if is_wall[own]}
     return list(found.values())
+
+
+@dataclass(frozen=True, slots=True)
+class Door:
+    """A door that is drawn open.
+
+    Attributes:
+        swing: The arc of its tip.
+        pieces: Identities of its arc and its leaves among the pieces that are drawn.
+    """
+
+    swing: Arc
+    pieces: frozenset[int]
+
+    def draws(self, path: Path) -> bool:
+        """Whether a path is the door's arc or leaf, and nothing beyond the door's circle."""
+        reach_mm = math.hypot(*self.swing.u) + LEAF_SLACK_MM
+        return any(id(piece) in self.pieces for piece in path.pieces) and all(
+            math.dist(spot, self.swing.centre) <= reach_mm
+            for piece in path.pieces
+            for spot in (piece.start, piece.end)
+        )
+
+
+def without_swings(features: Sequence[Feature]) -> tuple[list[Feature], int]:
+    """Features less the doors drawn among them, and how many doors these are.
+
+    A door is an arc with a straight leaf from its centre to it. With the two goes
+    whatever else of the same paths lies within the door's circle: the other side of the leaf.
+    """
+    arcs = [
+        piece
+        for feature in features
+        for path in feature.paths
+        for piece in path.pieces
+        if isinstance(piece, Arc) and _may_be_swing(piece)
+    ]
+    lines = [
+        piece
+        for feature in features
+        for path in feature.paths
+        for piece in path.pieces
+        if isinstance(piece, Line)
+    ]
+    if not arcs or not lines:
+        return list(features), 0
+    tree = cKDTree([end for line in lines for end in (line.start, line.end)])
+    doors: list[Door] = []
+    for arc in arcs:
+        near = [lines[i // 2] for i in tree.query_ball_point(arc.centre, LEAF_SLACK_MM)]
+        leaves = [line for line in near if _is_leaf(line, arc)]
+        if leaves:
+            doors.append(Door(arc, frozenset(id(piece) for piece in (arc, *leaves))))
+    kept = []
+    for feature in features:
+        paths = tuple(path for path in feature.paths if not any(d.draws(path) for d in doors))
+        if paths:
+            kept.append(replace(feature, paths=paths))
+    return kept, len(doors)
+
+
+def _may_be_swing(arc: Arc) -> bool:
+    radius_mm = math.hypot(*arc.u)
+    return arc.is_round and LEAST_LEAF_MM <= radius_mm <= LEAF_MM and arc.sweep_rad <= WIDEST_RAD
+
+
+def _is_leaf(line: Line, arc: Arc) -> bool:
+    """Whether a line runs from an arc's centre to the arc."""
+    swing = LineString(arc.chords())
+    return any(
+        math.dist(hinge, arc.centre) <= LEAF_SLACK_MM and swing.distance(Spot(tip)) <= LEAF_SLACK_MM
+        for hinge, tip in ((line.start, line.end), (line.end, line.start))
+    )
 
 
 def partition_findings(found: Sequence[Feature]) -> list[Finding]:

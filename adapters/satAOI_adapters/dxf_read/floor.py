@@ -1,24 +1,24 @@
 """The floor: as drawn on its layer, or inferred from the walls around it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 import shapely
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import LineString, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.enclosure import OPENING_MM, enclosed
 from satAOI_adapters.dxf_read.entities import Feature
-from satAOI_adapters.dxf_read.linework import GAP_MM, Network, is_thin, network
+from satAOI_adapters.dxf_read.linework import Network, is_thin, network
 from satAOI_adapters.dxf_read.obstacles import outlines_of
 from satAOI_adapters.dxf_read.shapes import even_odd, middle_line, room, rounded, slivers
+from satAOI_adapters.dxf_read.terms import GAP_MM, Terms
 from satAOI_geo.errors import DrawingError, EmptyPlanError
 from satAOI_geo.plan import (
     Circle,
     Finding,
-    Frame,
     Kind,
     Obstacle,
     Region,
@@ -55,7 +55,7 @@ def floor_of(
     drawn: Sequence[Feature],
     obstacles: Sequence[Obstacle],
     sills: Sequence[LineString],
-    frame: Frame,
+    terms: Terms,
 ) -> Floor:
     """The floor of a plan.
 
@@ -63,13 +63,17 @@ def floor_of(
         drawn: What is on floor layers.
         obstacles: What bounds the floor where no layer does.
         sills: Lines across openings, which close them.
-        frame: The plan's frame, for positions in messages.
+        terms: The terms of the reading.
 
     Raises:
         DrawingError: If the outline on a floor layer is not closed.
         EmptyPlanError: If there is nothing on a floor layer and nothing is enclosed by walls.
     """
-    return _drawn(drawn, obstacles, frame) if drawn else _inferred(obstacles, sills)
+    floor = _drawn(drawn, obstacles, terms) if drawn else _inferred(obstacles, sills, terms)
+    if terms.region_mm is None:
+        return floor
+    region = as_region(floor.region.intersection(box(*terms.region_mm)))
+    return replace(floor, region=region)
 
 
 def nested(polygons: Sequence[Polygon]) -> Region:
@@ -82,7 +86,7 @@ def nested(polygons: Sequence[Polygon]) -> Region:
     return as_region(area)
 
 
-def _drawn(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], frame: Frame) -> Floor:
+def _drawn(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], terms: Terms) -> Floor:
     outlines: list[Polygon] = []
     filled: list[BaseGeometry] = []
     lines: list[LineString] = []
@@ -97,15 +101,17 @@ def _drawn(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], frame: Frame
             else:
                 lines.append(middle_line(path))
                 curved.extend(slivers(path))
-    joined = network(lines)
+    joined = network(lines, terms.gap_mm)
     panels, left_out = _panels(joined, obstacles)
     # chords reach over curves that bulge inwards
     loops = shapely.union_all(panels).difference(shapely.union_all(curved))
     region = as_region(shapely.union_all([nested(outlines), loops, *filled]))
     if region.is_empty:
-        raise _open_outline(drawn[0], joined, frame)
+        raise _open_outline(drawn[0], joined, terms)
     neat = as_region(shapely.union_all(rounded(polygons_in([region]))))
-    return Floor(neat, "layer", (*_no_tiles(left_out, drawn[0]), *_joined_gaps(joined, drawn[0])))
+    return Floor(
+        neat, "layer", (*_no_tiles(left_out, drawn[0]), *_joined_gaps(joined, drawn[0], terms))
+    )
 
 
 def _regions(feature: Feature) -> list[BaseGeometry]:
@@ -136,9 +142,8 @@ def _panels(joined: Network, obstacles: Sequence[Obstacle]) -> tuple[list[Polygo
     return tiles, [face for face in faces if not is_thin(face, widest_mm)]
 
 
-def _inferred(obstacles: Sequence[Obstacle], sills: Sequence[LineString]) -> Floor:
-    bounding = [o.region() for o in obstacles if o.kind in BOUNDING]
-    region = enclosed([*(bounding or [o.region() for o in obstacles]), *sills])
+def _inferred(obstacles: Sequence[Obstacle], sills: Sequence[LineString], terms: Terms) -> Floor:
+    region = enclosed([*(o.region() for o in obstacles if o.kind in BOUNDING), *sills])
     if not region.is_empty:
         area_m2 = region.area / 1e6
         return Floor(
@@ -153,14 +158,50 @@ def _inferred(obstacles: Sequence[Obstacle], sills: Sequence[LineString]) -> Flo
                 ),
             ),
         )
-    raise EmptyPlanError(
-        "no layer shows the floor, and the walls enclose nothing with openings of up to "
-        f"{OPENING_MM / 1000:g} m closed; draw the floor's outline on a layer FLOOR, or name its "
-        "layer with --layers"
+    if terms.region_mm is not None:
+        return Floor(box(*terms.region_mm), "inferred", (_of_region(),))
+    if not terms.is_named:
+        raise EmptyPlanError(
+            "no layer shows the floor, and the lines enclose nothing with openings of up to "
+            f"{OPENING_MM / 1000:g} m closed; draw the floor's outline on a layer FLOOR, or name "
+            "its layer in a file for --layers, or give the part to read with --region"
+        )
+    return _guessed([o.region() for o in obstacles])
+
+
+def _of_region() -> Finding:
+    return Finding(
+        "floor-region",
+        "no layer shows the floor and the walls in the region do not enclose any: all of the "
+        "region counts as floor",
+        "draw the floor's outline on a layer FLOOR",
     )
 
 
-def _open_outline(feature: Feature, joined: Network, frame: Frame) -> DrawingError:
+def _guessed(regions: Sequence[BaseGeometry]) -> Floor:
+    """The hull of all obstacles: better than nothing, and said."""
+    hull = shapely.union_all(regions).convex_hull
+    if not isinstance(hull, Polygon):
+        raise EmptyPlanError(
+            "the drawing holds no floor and nothing that could enclose one; draw the floor's "
+            "outline on a layer FLOOR"
+        )
+    return Floor(
+        as_region(shapely.union_all(rounded([hull]))),
+        "inferred",
+        (
+            Finding(
+                "floor-guessed",
+                "no layer shows the floor and the walls do not enclose any: everything between "
+                f"the obstacles is taken as floor, {hull.area / 1e6:.2f} m²; where it really ends "
+                "is not known",
+                "draw its outline on a layer FLOOR, or give the part to read with --region",
+            ),
+        ),
+    )
+
+
+def _open_outline(feature: Feature, joined: Network, terms: Terms) -> DrawingError:
     placed = feature.placed
     ends = [end for end, _ in joined.loose]
     if len(ends) < 2:
@@ -170,7 +211,7 @@ def _open_outline(feature: Feature, joined: Network, frame: Frame) -> DrawingErr
             layer=placed.layer,
             handle=placed.handle,
         )
-    start_mm, end_mm = frame.to_drawing_mm(ends[:2])
+    start_mm, end_mm = terms.frame.to_drawing_mm(ends[:2])
     gap_mm = float(np.hypot(*(end_mm - start_mm)))
     return DrawingError(
         f"the floor's outline on layer '{placed.layer}' is open: its ends at ({start_mm[0]:.1f}, "
@@ -197,14 +238,14 @@ def _no_tiles(left_out: Sequence[Polygon], feature: Feature) -> tuple[Finding, .
     )
 
 
-def _joined_gaps(joined: Network, feature: Feature) -> tuple[Finding, ...]:
+def _joined_gaps(joined: Network, feature: Feature, terms: Terms) -> tuple[Finding, ...]:
     if not joined.n_joined:
         return ()
     return (
         Finding(
             "gap-closed",
             f"{joined.n_joined} line ends of the floor's outline were joined over gaps of up to "
-            f"{GAP_MM:g} mm",
+            f"{terms.gap_mm:g} mm",
             layer=feature.placed.layer,
         ),
     )

@@ -6,7 +6,8 @@ themselves stay where they were drawn.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Final
 
 import shapely
@@ -16,10 +17,8 @@ from shapely.geometry import Point as Spot
 
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.shapes import rounded
+from satAOI_adapters.dxf_read.terms import GAP_MM
 from satAOI_geo.plan import polygons_in
-
-GAP_MM: Final = 1.0
-"""Ends this close belong together: no draughtsman leaves a gap of a millimetre on purpose."""
 
 NEAR_MISS_MM: Final = 50.0
 """Ends this close were perhaps meant to meet: reported, left open."""
@@ -34,7 +33,7 @@ Few walls are thicker, and a room narrower than this takes in no robot of a usua
 """
 
 PARALLEL: Final = 0.02
-"""Greatest sine of the angle between the two faces of one wall, about one degree."""
+"""Greatest sine of the angle between the two faces of one wall: about one degree."""
 
 SQUARE: Final = 0.85
 """Greatest cosine of the angle between a wall and its end: 32° to 148°."""
@@ -122,26 +121,58 @@ def with_wall_ends(joined: Network) -> Network:
     return Network((*joined.lines, *caps), loose, joined.n_joined, joined.gaps)
 
 
+def with_wall_ends_at(joined: Network, edges: Sequence[LineString]) -> Network:
+    """Close the ends of walls whose outer face is the edge of the floor.
+
+    A loose end is led straight across to a parallel edge no farther away than `WALL_MM`.
+    """
+    sides = [LineString(side) for edge in edges for side in pairwise(edge.coords)]
+    tree = shapely.STRtree(sides)
+    caps = []
+    for end, outwards in joined.loose:
+        spot = Spot(end)
+        near = [sides[i] for i in tree.query(spot, predicate="dwithin", distance=WALL_MM)]
+        beside = [side for side in near if _is_parallel(side, outwards) and side.distance(spot)]
+        if beside:
+            nearest = min(beside, key=spot.distance)
+            foot = nearest.interpolate(nearest.project(spot))
+            caps.append(_joint(end, (foot.x, foot.y), outwards))
+    return replace(joined, lines=(*joined.lines, *edges, *caps))
+
+
+def _is_parallel(side: LineString, along: Point) -> bool:
+    way = _direction(side.coords[0], side.coords[-1])
+    return abs(way[0] * along[1] - way[1] * along[0]) <= PARALLEL
+
+
 def is_thin(polygon: Polygon, width_mm: float = WALL_MM) -> bool:
     """Whether no disc of this diameter fits into a polygon."""
     return bool(polygon.buffer(-width_mm / 2).is_empty)
 
 
 def _ends(lines: Sequence[LineString]) -> list[tuple[int, Point, Point]]:
-    """The ends at which no other line has a corner: owner, place and direction out of the line."""
-    corners: dict[Point, int] = {}
+    """The ends from which nothing goes on: owner, place and direction out of the line.
+
+    Lines drawn twice, or one over the other, count once.
+    """
+    ways: dict[Point, set[Point]] = {}
     for line in lines:
-        for corner in set(line.coords):
-            corners[corner] = corners.get(corner, 0) + 1
-    found = []
+        for start, end in pairwise(line.coords):
+            way = _direction(start, end)
+            ways.setdefault(start, set()).add(_coarse(way))
+            ways.setdefault(end, set()).add(_coarse((-way[0], -way[1])))
+    found = {}
     for owner, line in enumerate(lines):
         points = line.coords
-        if points[0] == points[-1]:
-            continue
         for end, before in ((points[0], points[1]), (points[-1], points[-2])):
-            if corners[end] == 1:
-                found.append((owner, end, _direction(before, end)))
-    return found
+            if len(ways[end]) == 1:
+                found.setdefault(end, (owner, end, _direction(before, end)))
+    return list(found.values())
+
+
+def _coarse(way: Point) -> Point:
+    """A direction to a tenth of a per mille: lines drawn one over the other agree in it."""
+    return round(way[0], 4) + 0.0, round(way[1], 4) + 0.0
 
 
 def _nearest(
@@ -149,7 +180,9 @@ def _nearest(
 ) -> Point | None:
     """The point of the other lines nearest to an end; a corner there if one is hardly farther."""
     spot = Spot(end)
-    near = [i for i in tree.query(spot, predicate="dwithin", distance=within_mm) if i != owner]
+    around = tree.query(spot, predicate="dwithin", distance=within_mm)
+    # lines with a corner here lie under the owner: nothing goes on from its end
+    near = [i for i in around if end not in lines[i].coords]
     own = lines[owner].coords
     other_end = own[-1] if own[0] == end else own[0]
     feet = (

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
+from ezdxf.entities import LWPolyline, Polyline
+
 from satAOI_adapters.dxf_read.expand import Placed
 from satAOI_adapters.layers import KINDS, LayerTable, Meaning, Verdict
 from satAOI_geo.plan import Finding
@@ -34,7 +36,7 @@ def with_meaning(
         if name not in known:
             known[name] = verdict_of(placed, table)
     seen = tuple(Seen(placed, known[placed.layer, placed.blocks]) for placed in drawn)
-    is_unnamed = [entity.verdict.meaning is None for entity in seen]
+    is_unnamed = [entity.verdict.meaning is None or _is_face(entity) for entity in seen]
     if any(entity.verdict.meaning in TELLING for entity in seen) or not any(is_unnamed):
         return seen, ()
     as_wall = Verdict(Meaning.WALL)
@@ -45,6 +47,13 @@ def with_meaning(
         ),
         (_all_walls([e for e, unnamed in zip(seen, is_unnamed, strict=True) if unnamed]),),
     )
+
+
+def _is_face(entity: Seen) -> bool:
+    """Whether an entity is the outline of a room, drawn along the faces of its walls."""
+    shape = entity.placed.entity
+    is_outline = isinstance(shape, LWPolyline | Polyline) and shape.is_closed
+    return entity.verdict.meaning is Meaning.ROOM and is_outline
 
 
 def verdict_of(placed: Placed, table: LayerTable) -> Verdict:

@@ -1,5 +1,6 @@
 """Features as obstacles: solids by kind, walls from whatever draughtsmen draw as walls."""
 
+import math
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -10,12 +11,12 @@ from shapely.geometry import LineString, Polygon
 from satAOI_adapters.dxf_read.curves import Path
 from satAOI_adapters.dxf_read.entities import Feature
 from satAOI_adapters.dxf_read.linework import (
-    GAP_MM,
     WALL_MM,
     Network,
     is_thin,
     network,
     with_wall_ends,
+    with_wall_ends_at,
 )
 from satAOI_adapters.dxf_read.shapes import (
     band,
@@ -26,7 +27,8 @@ from satAOI_adapters.dxf_read.shapes import (
     slivers,
     traces,
 )
-from satAOI_geo.plan import Circle, Finding, Frame, Kind, Obstacle, Shape, polygons_in
+from satAOI_adapters.dxf_read.terms import GAP_MM, Terms
+from satAOI_geo.plan import Circle, Finding, Kind, Obstacle, Shape, polygons_in
 
 COVERED_MM: float = 1e-3
 """A line this close to a solid adds nothing to it."""
@@ -40,7 +42,7 @@ class Standing:
     findings: tuple[Finding, ...] = ()
 
 
-def solids(features: Sequence[Feature], kind: Kind, frame: Frame) -> Standing:
+def solids(features: Sequence[Feature], kind: Kind, terms: Terms) -> Standing:
     """Columns, holes and the like: what is drawn closed, or as lines that close, is solid."""
     obstacles: list[Obstacle] = []
     open_paths: defaultdict[str, list[tuple[Path, Feature]]] = defaultdict(list)
@@ -55,7 +57,7 @@ def solids(features: Sequence[Feature], kind: Kind, frame: Frame) -> Standing:
                 open_paths[feature.placed.layer].append((path, feature))
     findings: list[Finding] = []
     for layer, paths in open_paths.items():
-        standing = _loops(layer, paths, kind, frame)
+        standing = _loops(layer, paths, kind, terms)
         obstacles.extend(standing.obstacles)
         findings.extend(standing.findings)
     return Standing(tuple(obstacles), tuple(findings))
@@ -65,7 +67,7 @@ def walls(
     features: Sequence[Feature],
     columns: Sequence[Obstacle],
     floor_edges: Sequence[LineString],
-    frame: Frame,
+    terms: Terms,
 ) -> Standing:
     """Walls from fills, bands, outlines and lines.
 
@@ -77,7 +79,7 @@ def walls(
         features: What is drawn on wall layers.
         columns: Obstacles that walls may end at.
         floor_edges: Outlines of the floor, which may be the outer faces of walls.
-        frame: The plan's frame, for positions in findings.
+        terms: The terms of the reading.
     """
     obstacles: list[Obstacle] = []
     lines: list[tuple[Path, Feature]] = []
@@ -94,12 +96,14 @@ def walls(
                 wide[feature.placed.layer] += path.closed
                 lines.append((path, feature))
     outlines = outlines_of([*obstacles, *columns])
-    joined = with_wall_ends(network([*(middle_line(path) for path, _ in lines), *outlines]))
+    drawn_lines = [middle_line(path) for path, _ in lines]
+    joined = with_wall_ends(network([*drawn_lines, *outlines], terms.gap_mm))
     if floor_edges:
-        joined = replace(joined, lines=network([*joined.lines, *floor_edges]).lines)
+        at_edges = with_wall_ends_at(joined, floor_edges).lines
+        joined = replace(joined, lines=network(at_edges, terms.gap_mm).lines)
     inside = _insides(joined.faces(), lines, obstacles) if lines else []
     drawn = [o for path, feature in lines for o in _obstacles(traces(path), Kind.WALL, feature)]
-    findings = (*_wide_outlines(wide), *_filled(inside), *_gaps("wall", joined, frame))
+    findings = (*_wide_outlines(wide), *_filled(inside), *_gaps("wall", joined, terms))
     return Standing((*obstacles, *drawn, *inside), findings)
 
 
@@ -111,9 +115,9 @@ def area_of(feature: Feature) -> list[Shape]:
     return covered or [trace for path in feature.paths for trace in traces(path)]
 
 
-def _loops(layer: str, paths: Sequence[tuple[Path, Feature]], kind: Kind, frame: Frame) -> Standing:
+def _loops(layer: str, paths: Sequence[tuple[Path, Feature]], kind: Kind, terms: Terms) -> Standing:
     """Loose lines of one layer: what they enclose is solid, the rest are lines."""
-    joined = network([middle_line(path) for path, _ in paths])
+    joined = network([middle_line(path) for path, _ in paths], terms.gap_mm)
     faces = shapely.union_all(joined.faces())
     # curves bulge out of the polygons that their chords enclose
     bulges = [s for path, _ in paths for s in slivers(path) if s.intersects(faces)]
@@ -127,7 +131,7 @@ def _loops(layer: str, paths: Sequence[tuple[Path, Feature]], kind: Kind, frame:
     for path, feature in paths:
         if not grown.covers(middle_line(path)):
             obstacles.extend(_obstacles(traces(path), kind, feature))
-    return Standing(tuple(obstacles), _gaps(layer, joined, frame))
+    return Standing(tuple(obstacles), _gaps(layer, joined, terms))
 
 
 def _insides(
@@ -194,7 +198,7 @@ def _filled(inside: Sequence[Obstacle]) -> Iterable[Finding]:
         )
 
 
-def _gaps(what: str, joined: Network, frame: Frame) -> tuple[Finding, ...]:
+def _gaps(what: str, joined: Network, terms: Terms) -> tuple[Finding, ...]:
     """What was joined and what was left open, on one layer or for one kind."""
     findings = []
     if joined.n_joined:
@@ -202,17 +206,18 @@ def _gaps(what: str, joined: Network, frame: Frame) -> tuple[Finding, ...]:
             Finding(
                 "gap-closed",
                 f"{joined.n_joined} line ends of '{what}' were joined over gaps of up to "
-                f"{GAP_MM:g} mm",
+                f"{terms.gap_mm:g} mm",
             )
         )
     for gap in joined.gaps:
-        start_mm, end_mm = frame.to_drawing_mm((gap.start, gap.end))
+        start_mm, end_mm = terms.frame.to_drawing_mm((gap.start, gap.end))
         findings.append(
             Finding(
                 "gap-open",
                 f"lines of '{what}' miss each other by {gap.width_mm:.1f} mm, from "
                 f"({start_mm[0]:.1f}, {start_mm[1]:.1f}) to ({end_mm[0]:.1f}, {end_mm[1]:.1f}) mm",
-                "join them in the drawing if they were meant to meet",
+                "if they were meant to meet, join them in the drawing or give --close-gaps "
+                f"{math.ceil(gap.width_mm)}",
                 at_mm=(float(start_mm[0]), float(start_mm[1])),
             )
         )

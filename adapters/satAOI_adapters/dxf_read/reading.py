@@ -14,7 +14,12 @@ from ezdxf.math import Vec3
 from shapely.geometry import LineString
 
 from satAOI_adapters.dxf_read.curves import Point
-from satAOI_adapters.dxf_read.doors import partition_findings, partitions, spans
+from satAOI_adapters.dxf_read.doors import (
+    partition_findings,
+    partitions,
+    spans,
+    without_swings,
+)
 from satAOI_adapters.dxf_read.entities import LOCAL_DIGITS, Feature
 from satAOI_adapters.dxf_read.floor import floor_of
 from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
@@ -22,8 +27,10 @@ from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.plans import Drawn, chosen, clusters, within
 from satAOI_adapters.dxf_read.shapes import middle_line
 from satAOI_adapters.dxf_read.survey import Survey, survey
+from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_adapters.dxf_read.unclassified import unclassified
 from satAOI_adapters.layers import KINDS, Meaning
+from satAOI_geo.errors import InputError
 from satAOI_geo.plan import (
     Circle,
     Finding,
@@ -60,9 +67,10 @@ def read(path: Path, options: ReadOptions) -> FloorPlan:
     start_mm, start_findings = _start(drawing, frame, options)
     everything = drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
     drawn, choice = _chosen(everything, options, start_mm, frame)
-    standing = _standing(drawn, frame)
+    terms = Terms(frame, options.close_gaps_mm, drawing.is_named, _region_mm(options, frame))
+    standing = _standing(drawn, terms)
     sills = spans(drawn[Meaning.DOOR], [o.region() for o in standing.obstacles])
-    floor = floor_of(drawn[Meaning.FLOOR], standing.obstacles, sills, frame)
+    floor = floor_of(drawn[Meaning.FLOOR], standing.obstacles, sills, terms)
     others = unclassified(drawn[None], floor.region, standing.obstacles)
     plan = FloorPlan(
         floor=floor.region,
@@ -87,16 +95,26 @@ def _chosen(
     drawn: Drawn, options: ReadOptions, start_mm: Point | None, frame: Frame
 ) -> tuple[Drawn, tuple[Finding, ...]]:
     """What belongs to the plan that is read, and what is to be said about the rest."""
-    if options.region is not None:
-        corners = frame.to_local_mm(np.reshape(options.region, (2, 2)))
-        (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
-        kept, n_left_out = within(drawn, (left, bottom, right, top))
+    region_mm = _region_mm(options, frame)
+    if region_mm is not None:
+        kept, n_left_out = within(drawn, region_mm)
         return kept, _left_out(n_left_out, "the region")
     cluster, findings = chosen(clusters(drawn), options.plan, start_mm, frame)
     if cluster is None:
         return drawn, findings
     kept, n_left_out = within(drawn, cluster.bounds_mm)
     return kept, (*findings, *_left_out(n_left_out, "the plan"))
+
+
+def _region_mm(options: ReadOptions, frame: Frame) -> tuple[float, float, float, float] | None:
+    """The part that the user wants read, in the plan's frame."""
+    if options.region is None:
+        return None
+    corners = frame.to_local_mm(np.reshape(options.region, (2, 2)))
+    (left, bottom), (right, top) = np.min(corners, axis=0), np.max(corners, axis=0)
+    if not (left < right and bottom < top):
+        raise InputError("the region has no area; give left,bottom,right,top in drawing units")
+    return float(left), float(bottom), float(right), float(top)
 
 
 def _left_out(count: int, what: str) -> tuple[Finding, ...]:
@@ -111,22 +129,36 @@ def _left_out(count: int, what: str) -> tuple[Finding, ...]:
     )
 
 
-def _standing(drawn: Drawn, frame: Frame) -> Standing:
+def _standing(drawn: Drawn, terms: Terms) -> Standing:
     """The obstacles of all kinds that layers name."""
     by_kind: dict[Kind, list[Feature]] = {kind: [] for kind in Kind}
     for meaning, kind in KINDS.items():
         by_kind[kind].extend(drawn[meaning])
-    parts = [solids(by_kind[kind], kind, frame) for kind in SOLID_KINDS]
+    parts = [solids(by_kind[kind], kind, terms) for kind in SOLID_KINDS]
     columns = parts[SOLID_KINDS.index(Kind.COLUMN)].obstacles
-    drawn_as_walls = by_kind[Kind.WALL]
+    drawn_as_walls, n_doors = without_swings(by_kind[Kind.WALL])
     on_door_layers = partitions(drawn[Meaning.DOOR], _lines(drawn_as_walls))
     edges = _lines(drawn[Meaning.FLOOR], only_closed=True)
-    parts.append(walls([*drawn_as_walls, *on_door_layers], columns, edges, frame))
+    parts.append(walls([*drawn_as_walls, *on_door_layers], columns, edges, terms))
     return Standing(
         tuple(obstacle for part in parts for obstacle in part.obstacles),
         (
             *(finding for part in parts for finding in part.findings),
             *partition_findings(on_door_layers),
+            *_doors_among_walls(n_doors),
+        ),
+    )
+
+
+def _doors_among_walls(count: int) -> tuple[Finding, ...]:
+    if not count:
+        return ()
+    return (
+        Finding(
+            "door-among-walls",
+            f"{count} doors, each an arc with a leaf, are drawn among walls and windows: arcs and "
+            "leaves are left out",
+            "draw doors on a layer of their own",
         ),
     )
 

@@ -45,6 +45,7 @@ class Survey:
         hidden: Entities on layers that are frozen or off, by layer.
         unit: The unit of length.
         box: Left, bottom, right, top of what is drawn, in drawing units.
+        is_named: Whether layers tell what stops the robot, rather than everything being walls.
         middle: In the midst of it, in drawing units; a few strays do not move it.
         findings: What was noticed so far.
     """
@@ -57,6 +58,7 @@ class Survey:
     unit: Unit
     box: tuple[float, float, float, float]
     middle: Point
+    is_named: bool
     findings: tuple[Finding, ...]
 
     def frame(self) -> Frame:
@@ -130,6 +132,7 @@ def survey(path: Path, options: ReadOptions) -> Survey:
         unit=known.unit,
         box=box,
         middle=middle,
+        is_named=not fallback,
         findings=(
             *opened.findings,
             *known.findings,

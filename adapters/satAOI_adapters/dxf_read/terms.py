@@ -1,0 +1,27 @@
+"""What all stages of one reading share."""
+
+from dataclasses import dataclass
+from typing import Final
+
+from satAOI_geo.plan import Frame
+
+GAP_MM: Final = 1.0
+"""Ends this close belong together: no draughtsman leaves a gap of a millimetre on purpose."""
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """The terms of one reading.
+
+    Attributes:
+        frame: Where the plan's millimetres lie in the drawing, for positions in findings.
+        gap_mm: Line ends this far apart are joined when outlines and walls are closed.
+        is_named: Whether layers tell what stops the robot, rather than everything counting as
+            walls.
+        region_mm: Left, bottom, right, top of the part that is read, in the plan's frame.
+    """
+
+    frame: Frame
+    gap_mm: float = GAP_MM
+    is_named: bool = True
+    region_mm: tuple[float, float, float, float] | None = None
