@@ -160,7 +160,7 @@ def explain(
     return DONE
 
 
-@commands.command()
+@commands.command(epilog=EPILOG)
 @taking(PLAN, TO, ROUTE_OUTPUT, READING, QUESTION, QUIET)
 def route(
     *,
