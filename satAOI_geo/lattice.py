@@ -136,6 +136,8 @@ class Lattice:
             mirrored = 2 * k > quarter
             angle_rad = math.pi / 2 * (quarter - k if mirrored else k) / quarter
             cos, sin = math.cos(angle_rad), math.sin(angle_rad)
+            if 2 * k == quarter:
+                cos = sin = math.sqrt(0.5)
             first.append((sin, cos) if mirrored else (cos, sin))
         east = np.array(first)
         north = np.column_stack((-east[:, 1], east[:, 0]))

@@ -121,7 +121,8 @@ class Robot:
                 measure="arm_length_mm",
             )
         swing_rad = self.swing_max_rad - self.swing_min_rad
-        if not 0 <= swing_rad <= 2 * math.pi:
+        # degrees turned into radians may end a full turn a rounding late
+        if not 0 <= swing_rad <= 2 * math.pi * (1 + 1e-12):
             raise RobotError(
                 f"robot '{self.name}': the swing range from {math.degrees(self.swing_min_rad):g}° "
                 f"to {math.degrees(self.swing_max_rad):g}° must span 0° to 360°",

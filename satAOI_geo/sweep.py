@@ -3,8 +3,9 @@
 A part turned by δ about o stays inside the convex hull of its corners at the start, at the end,
 and half-way pushed out from o by 1 / cos(δ/2): a corner at distance ρ from o runs along an arc,
 and the tangents at the arc's two ends meet at ρ / cos(δ/2). The hull is convex, contains the true
-sweep, so that an allowed move really touches nothing, and is tight: at δ = 15° the push is under
-1 % of the radius.
+sweep, so that an allowed move really touches nothing. At δ = 15° the push is under 1 % of the
+radius. What the hull adds lies on the side towards o, where the true sweep is hollow: up to 60 mm
+with the prototype's vehicle.
 """
 
 import math
