@@ -84,6 +84,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         say_error(f"{error.filename or 'input or output'}: {error.strerror}")
         return USAGE
+    except MemoryError:
+        say_error("not enough memory for this plan; give a coarser --step or a smaller --region")
+        return EXIT_CODES[LimitError]
     except (click.Abort, KeyboardInterrupt):
         say_error("interrupted")
         return INTERRUPTED

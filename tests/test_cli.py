@@ -299,6 +299,17 @@ def test_an_interrupt_has_an_exit_code_of_its_own(
     assert not output.exists()
 
 
+def test_too_little_memory_is_a_limit(
+    room: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def exhausted(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(pipeline, "area_of_interest", exhausted)
+    assert main([str(room), "--quiet"]) == 5
+    assert "coarser --step" in the_error(capsys)
+
+
 def test_a_mistake_of_the_program_is_not_made_to_look_like_bad_input(
     room: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
