@@ -22,16 +22,17 @@ COARSE = Settings(step_mm=25.0, n_directions=8)
 
 
 def hall(schema: str, unit: str) -> Pen:
-    """A hall turned by 20 degrees and shifted, with a wall that leaves a closet closed."""
+    """A hall turned by 20 degrees and shifted, with 600 mm between two walls."""
     pen = Pen(schema=schema, unit=unit)
     site = pen.placement((1e6, -2e6, 300.0), turn_rad=np.radians(20.0))
     slab = pen.slab(6000.0, 4000.0)
     column = pen.product("IfcColumn", pen.extrusion(pen.circle(150.0), 3000.0))
-    wall = pen.product("IfcWall", pen.box((4800.0, 0.0, 0.0), (4900.0, 4000.0, 3000.0)))
-    for element in (slab, wall):
+    wall = pen.product("IfcWall", pen.box((5200.0, 0.0, 0.0), (5300.0, 4000.0, 3000.0)))
+    outer = pen.product("IfcWall", pen.box((5900.0, 0.0, 0.0), (6000.0, 4000.0, 3000.0)))
+    for element in (slab, wall, outer):
         element.ObjectPlacement = pen.placement(within=site)
     column.ObjectPlacement = pen.placement((2500.0, 3000.0, 0.0), within=site)
-    pen.contain(pen.storey("Ground", 300.0), slab, column, wall)
+    pen.contain(pen.storey("Ground", 300.0), slab, column, wall, outer)
     if schema == "IFC2X3":
         sign(pen)
     return pen
