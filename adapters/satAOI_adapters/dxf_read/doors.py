@@ -23,7 +23,7 @@ from shapely.geometry.base import BaseGeometry
 from satAOI_adapters.dxf_read.curves import Arc, Line, Path
 from satAOI_adapters.dxf_read.entities import Feature
 from satAOI_adapters.dxf_read.linework import PARALLEL
-from satAOI_adapters.dxf_read.terms import GAP_MM
+from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_geo.plan import Finding
 
 JAMB_MM: Final = 300.0
@@ -192,7 +192,7 @@ def _chains(lines: Sequence[LineString]) -> npt.NDArray[np.int32]:
     """The number of the chain, of lines that meet at their ends, that each line is in."""
     n = len(lines)
     ends = [line.coords[k] for line in lines for k in (0, -1)]
-    pairs = cKDTree(ends).query_pairs(GAP_MM, output_type="ndarray") // 2
+    pairs = cKDTree(ends).query_pairs(CLOSE_GAPS_MM, output_type="ndarray") // 2
     links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
     return np.asarray(connected_components(links, directed=False)[1])
 
@@ -201,7 +201,7 @@ def _in_pairs(lines: Sequence[LineString]) -> npt.NDArray[np.bool_]:
     """Which lines have a parallel one beside them, as the faces of a wall do."""
     ends = np.array([(line.coords[0], line.coords[-1]) for line in lines])
     along = ends[:, 1] - ends[:, 0]
-    along /= np.maximum(np.hypot(*along.T), GAP_MM)[:, np.newaxis]
+    along /= np.maximum(np.hypot(*along.T), CLOSE_GAPS_MM)[:, np.newaxis]
     near, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=FACES_MM)
     sines = np.abs(along[near, 0] * along[other, 1] - along[near, 1] * along[other, 0])
     long_enough = shapely.length(lines)[other] > PARTITION_MM

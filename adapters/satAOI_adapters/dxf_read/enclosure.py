@@ -18,8 +18,8 @@ from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.linework import is_thin
-from satAOI_adapters.dxf_read.shapes import rounded
-from satAOI_geo.plan import FloatArray, Region, as_region, polygons_in
+from satAOI_adapters.dxf_read.shapes import rounded, tidy
+from satAOI_geo.plan import FloatArray, Region, polygons_in
 
 OPENING_MM: Final = 2500.0
 """Widest opening in the outer walls that does not let the floor leak out: a double door."""
@@ -181,4 +181,4 @@ def _with_rooms(found: BaseGeometry, filled: BaseGeometry) -> Region:
         for part in parts
         if not all(is_thin(space) for space in polygons_in([part.difference(filled)]))
     ]
-    return as_region(shapely.union_all(rounded(rooms)))
+    return tidy(shapely.union_all(rooms))

@@ -181,7 +181,7 @@ def _visit(walk: _Walk, level: _Level, entity: DXFEntity) -> Iterable[_Level]:
     own = _layer(entity)
     layer = level.layer if own == BY_PARENT else level.prefix + own
     handle = level.handle or str(entity.dxf.get("handle") or "")
-    if entity.dxf.get("invisible", 0) or walk.is_frozen(layer):
+    if _is_invisible(entity) or walk.is_frozen(layer):
         walk.hidden[layer] += 1
     elif isinstance(entity, Insert):
         # a reference on a layer that is off hides only what takes that layer from it
@@ -199,6 +199,10 @@ def _layer(entity: DXFEntity) -> str:
     if isinstance(entity, DXFTagStorage):
         return str(entity.graphic_properties().get("layer", BY_PARENT))
     return str(entity.dxf.get("layer", BY_PARENT))
+
+
+def _is_invisible(entity: DXFEntity) -> bool:
+    return isinstance(entity, DXFGraphic) and bool(entity.dxf.get("invisible", 0))
 
 
 def _picture(entity: DXFEntity) -> list[DXFGraphic]:

@@ -13,8 +13,9 @@ from satAOI_adapters.dxf_read.enclosure import OPENING_MM, enclosed
 from satAOI_adapters.dxf_read.entities import Feature
 from satAOI_adapters.dxf_read.linework import Network, is_thin, network
 from satAOI_adapters.dxf_read.obstacles import outlines_of
-from satAOI_adapters.dxf_read.shapes import even_odd, middle_line, room, rounded, slivers
-from satAOI_adapters.dxf_read.terms import GAP_MM, Terms
+from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
+from satAOI_adapters.dxf_read.shapes import even_odd, middle_line, room, slivers, tidy
+from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_geo.errors import DrawingError, EmptyPlanError
 from satAOI_geo.plan import (
     Circle,
@@ -23,7 +24,6 @@ from satAOI_geo.plan import (
     Obstacle,
     Region,
     as_region,
-    polygons_in,
 )
 
 MANY_TILES: Final = 20
@@ -72,7 +72,7 @@ def floor_of(
     floor = _drawn(drawn, obstacles, terms) if drawn else _inferred(obstacles, sills, terms)
     if terms.region_mm is None:
         return floor
-    region = as_region(floor.region.intersection(box(*terms.region_mm)))
+    region = tidy(floor.region.intersection(box(*terms.region_mm)))
     return replace(floor, region=region)
 
 
@@ -81,7 +81,7 @@ def nested(polygons: Sequence[Polygon]) -> Region:
     area: BaseGeometry = Polygon()
     for polygon in sorted(polygons, key=lambda outline: outline.area, reverse=True):
         # what lies wholly in the area cuts a hole into it, anything else adds to it
-        cuts = polygon.area > 0 and area.buffer(GAP_MM).contains(polygon)
+        cuts = polygon.area > 0 and area.buffer(CLOSE_GAPS_MM).contains(polygon)
         area = area.difference(polygon) if cuts else area.union(polygon)
     return as_region(area)
 
@@ -108,7 +108,7 @@ def _drawn(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], terms: Terms
     region = as_region(shapely.union_all([nested(outlines), loops, *filled]))
     if region.is_empty:
         raise _open_outline(drawn[0], joined, terms)
-    neat = as_region(shapely.union_all(rounded(polygons_in([region]))))
+    neat = tidy(region)
     return Floor(
         neat, "layer", (*_no_tiles(left_out, drawn[0]), *_joined_gaps(joined, drawn[0], terms))
     )
@@ -136,7 +136,7 @@ def _panels(joined: Network, obstacles: Sequence[Obstacle]) -> tuple[list[Polygo
     ]
     joints = shapely.STRtree(joined.lines)
     cut = network([*joined.lines, *walls]).faces()
-    near, _ = joints.query([f.boundary for f in cut], predicate="dwithin", distance=GAP_MM)
+    near, _ = joints.query([f.boundary for f in cut], predicate="dwithin", distance=CLOSE_GAPS_MM)
     faces = [cut[i] for i in np.unique(near)]
     tiles = [face for face in faces if is_thin(face, widest_mm)]
     return tiles, [face for face in faces if not is_thin(face, widest_mm)]
@@ -187,7 +187,7 @@ def _guessed(regions: Sequence[BaseGeometry]) -> Floor:
             "outline on a layer FLOOR"
         )
     return Floor(
-        as_region(shapely.union_all(rounded([hull]))),
+        tidy(hull),
         "inferred",
         (
             Finding(

@@ -16,8 +16,8 @@ from shapely.geometry import LineString, Polygon
 from shapely.geometry import Point as Spot
 
 from satAOI_adapters.dxf_read.curves import Point
+from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.shapes import rounded
-from satAOI_adapters.dxf_read.terms import GAP_MM
 from satAOI_geo.plan import polygons_in
 
 NEAR_MISS_MM: Final = 50.0
@@ -76,7 +76,7 @@ class Network:
         return rounded(polygons_in(shapely.polygonize([noded]).geoms))
 
 
-def network(lines: Sequence[LineString], gap_mm: float = GAP_MM) -> Network:
+def network(lines: Sequence[LineString], gap_mm: float = CLOSE_GAPS_MM) -> Network:
     """Join line ends that are at most `gap_mm` from another end or another line."""
     if not lines:
         return Network((), (), 0, ())
@@ -161,7 +161,7 @@ def _ends(lines: Sequence[LineString]) -> list[tuple[int, Point, Point]]:
             way = _direction(start, end)
             ways.setdefault(start, set()).add(_coarse(way))
             ways.setdefault(end, set()).add(_coarse((-way[0], -way[1])))
-    found = {}
+    found: dict[Point, tuple[int, Point, Point]] = {}
     for owner, line in enumerate(lines):
         points = line.coords
         for end, before in ((points[0], points[1]), (points[-1], points[-2])):
@@ -192,7 +192,7 @@ def _nearest(
         line = min((lines[i] for i in near), key=spot.distance)
         on_line = line.interpolate(line.project(spot))
         corner = min(line.coords, key=lambda corner: math.dist(corner, end))
-        is_corner = math.dist(corner, end) <= spot.distance(on_line) + GAP_MM
+        is_corner = math.dist(corner, end) <= spot.distance(on_line) + CLOSE_GAPS_MM
         feet.append(corner if is_corner else (on_line.x, on_line.y))
     return min(feet, key=lambda foot: math.dist(foot, end), default=None)
 

@@ -18,6 +18,7 @@ from satAOI_adapters.dxf_read.linework import (
     with_wall_ends,
     with_wall_ends_at,
 )
+from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.shapes import (
     band,
     even_odd,
@@ -27,7 +28,7 @@ from satAOI_adapters.dxf_read.shapes import (
     slivers,
     traces,
 )
-from satAOI_adapters.dxf_read.terms import GAP_MM, Terms
+from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_geo.plan import Circle, Finding, Kind, Obstacle, Shape, polygons_in
 
 COVERED_MM: float = 1e-3
@@ -145,7 +146,7 @@ def _insides(
     tree = shapely.STRtree([middle_line(path) for path, _ in lines])
     found = []
     for face in faces:
-        is_crumb = face.area < GAP_MM**2
+        is_crumb = face.area < CLOSE_GAPS_MM**2
         if is_crumb or known.contains(face.representative_point()) or not is_thin(face):
             continue
         placed = lines[tree.nearest(face)][1].placed

@@ -8,7 +8,7 @@ from typing import Final, TypeVar
 import numpy as np
 import shapely
 from ezdxf.entities import Circle as CircleEntity
-from ezdxf.entities import DXFEntity, Insert
+from ezdxf.entities import DXFEntity, DXFGraphic, Insert
 from ezdxf.entities import Point as PointEntity
 from ezdxf.math import Vec3
 from shapely.geometry import LineString
@@ -185,7 +185,7 @@ def _start(
     marks = [
         place
         for entity in drawing.document.modelspace()
-        if entity.dxf.get("layer", "").upper() == START_LAYER
+        if isinstance(entity, DXFGraphic) and entity.dxf.layer.upper() == START_LAYER
         for place in _places(entity)
     ]
     if options.start is not None:

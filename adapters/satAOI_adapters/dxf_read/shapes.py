@@ -7,6 +7,7 @@ width stays one; a curve without width becomes a sliver, at most twice that wide
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import TypeVar
 
 import numpy as np
 import shapely
@@ -15,7 +16,9 @@ from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import SAGITTA_MM, Arc, Line, Path, Piece, Point, Spline
 from satAOI_adapters.dxf_read.entities import LOCAL_DIGITS
-from satAOI_geo.plan import Circle, FloatArray, Shape, polygons_in
+from satAOI_geo.plan import Circle, FloatArray, Region, Shape, as_region, polygons_in
+
+GeometryT = TypeVar("GeometryT", bound=BaseGeometry)
 
 SAME_MM = 10.0**-LOCAL_DIGITS
 """Centres and radii of arcs this close are one circle's: coordinates are rounded to this."""
@@ -125,12 +128,22 @@ def middle_line(path: Path) -> LineString:
 
 
 def rounded(polygons: Iterable[Polygon]) -> list[Polygon]:
-    """Polygons with corners to `entities.LOCAL_DIGITS`; one that thereby breaks stays as it is."""
+    """Polygons with corners to `entities.LOCAL_DIGITS`, still valid: hairs may fall off."""
     found = []
     for polygon in polygons:
-        neat = shapely.transform(polygon, lambda points: np.round(points, LOCAL_DIGITS) + 0.0)
-        found.append(neat if neat.is_valid else polygon)
+        neat = _round_corners(polygon)
+        found.extend([neat] if neat.is_valid else polygons_in([tidy(polygon)]))
     return found
+
+
+def tidy(region: BaseGeometry) -> Region:
+    """A region on the grid of `entities.LOCAL_DIGITS`, valid there."""
+    return as_region(_round_corners(shapely.set_precision(region, SAME_MM)))
+
+
+def _round_corners(region: GeometryT) -> GeometryT:
+    neat: GeometryT = shapely.transform(region, lambda xy: np.round(xy, LOCAL_DIGITS) + 0.0)
+    return neat
 
 
 def shapes_of(path: Path) -> list[Shape]:

@@ -24,7 +24,7 @@ from satAOI_adapters.dxf_read.unread import missing_xrefs, unread_entities
 from satAOI_adapters.dxf_read.xrefs import xrefs_in
 from satAOI_adapters.layers import Meaning, layer_table
 from satAOI_geo.errors import EmptyPlanError
-from satAOI_geo.plan import Finding, Frame
+from satAOI_geo.plan import Finding, FloatArray, Frame
 
 FEET_AND_INCHES: Final = (3, 4)
 """$LUNITS of a drawing that writes lengths in feet and inches."""
@@ -161,9 +161,8 @@ def _without_strays(
     keyboard; kept, they would take the digits that the plan needs.
     """
     boxes = np.array([feature.box() for _, feature in rough])
-    middle = np.median(boxes[:, :2], axis=0)
-    reach = np.abs(boxes - np.tile(middle, 2)).max(axis=1)
-    is_near = reach <= limits.MAX_COORDINATE
+    middle = _middle(boxes[:, :2])
+    is_near = np.abs(boxes - np.tile(middle, 2)).max(axis=1) <= limits.MAX_COORDINATE
     near = [pair for pair, keeps in zip(rough, is_near, strict=True) if keeps]
     far = [pair for pair, keeps in zip(rough, is_near, strict=True) if not keeps]
     left, bottom = boxes[is_near, :2].min(axis=0)
@@ -181,6 +180,21 @@ def _without_strays(
     )
     box = (float(left), float(bottom), float(right), float(top))
     return near, box, (float(middle[0]), float(middle[1])), findings
+
+
+def _middle(corners: FloatArray) -> FloatArray:
+    """The corner that has most of the others around it, of those in the middle of either axis.
+
+    Between two corners the mean of them would have none around it.
+    """
+    candidates = [
+        np.quantile(corners, 0.5, axis=0, method=method) for method in ("lower", "higher")
+    ]
+    n_near = [
+        (np.abs(corners - candidate).max(axis=1) <= limits.MAX_COORDINATE).sum()
+        for candidate in candidates
+    ]
+    return candidates[int(np.argmax(n_near))]
 
 
 def _what_else(expansion: Expansion) -> str:

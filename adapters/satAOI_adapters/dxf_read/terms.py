@@ -1,12 +1,9 @@
 """What all stages of one reading share."""
 
 from dataclasses import dataclass
-from typing import Final
 
+from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_geo.plan import Frame
-
-GAP_MM: Final = 1.0
-"""Ends this close belong together: no draughtsman leaves a gap of a millimetre on purpose."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +19,6 @@ class Terms:
     """
 
     frame: Frame
-    gap_mm: float = GAP_MM
+    gap_mm: float = CLOSE_GAPS_MM
     is_named: bool = True
     region_mm: tuple[float, float, float, float] | None = None

@@ -1,0 +1,165 @@
+"""Several plans in one drawing, and what lies beside, under or behind them."""
+
+from pathlib import Path
+
+import ezdxf
+import pytest
+from ezdxf.document import Drawing
+
+from satAOI_geo.errors import DrawingError, InputError
+from tests.drawings import MM, codes, drawing, plan_of, rectangle, standing
+
+
+def sheet() -> Drawing:
+    """A plan with doors and a column, a section beside it, and a title block."""
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = MM
+    space = document.modelspace()
+    rectangle(space, 0, 0, 8000, 6000, layer="WALL")
+    rectangle(space, 200, 200, 7800, 5800, layer="WALL")
+    rectangle(space, 4000, 3000, 4300, 3300, layer="COLUMN")
+    space.add_arc((200, 3000), 900, 0, 90, dxfattribs={"layer": "DOOR"})
+    # a section is drawn with walls, too
+    rectangle(space, 20_000, 0, 28_000, 3000, layer="WALL")
+    rectangle(space, 20_200, 0, 27_800, 2800, layer="WALL")
+    rectangle(space, -1000, -3000, 40_000, 10_000, layer="XYZ")
+    return document
+
+
+def test_likeliest_plan_is_read_and_the_choice_is_said(tmp_path: Path) -> None:
+    plan = plan_of(sheet(), tmp_path)
+    assert plan.frame.origin_mm == (0.0, 0.0)
+    assert plan.floor.area == 8000 * 6000
+    assert "several-plans" in codes(plan)
+    assert standing(plan, "XYZ") == []
+
+
+def test_plan_is_chosen_by_number(tmp_path: Path) -> None:
+    assert plan_of(sheet(), tmp_path, plan=1).frame.origin_mm == (0.0, 0.0)
+    assert plan_of(sheet(), tmp_path, plan=2).frame.origin_mm == (20_000.0, 0.0)
+
+
+def test_plan_is_chosen_by_the_start(tmp_path: Path) -> None:
+    plan = plan_of(sheet(), tmp_path, start=(24_000.0, 1500.0))
+    assert plan.frame.origin_mm == (20_000.0, 0.0)
+
+
+def test_plan_is_chosen_by_a_region(tmp_path: Path) -> None:
+    plan = plan_of(sheet(), tmp_path, region=(19_000.0, -500.0, 29_000.0, 4000.0))
+    assert plan.frame.origin_mm == (20_000.0, 0.0)
+    assert plan.floor.area == 8000 * 3000
+
+
+def test_region_around_no_floor_is_the_floor(tmp_path: Path) -> None:
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = MM
+    rectangle(document.modelspace(), 1000, 1000, 1500, 1500, layer="EQUIPMENT")
+    plan = plan_of(document, tmp_path, region=(0.0, 0.0, 4000.0, 3000.0))
+    assert plan.floor.area == 4000 * 3000
+    assert "floor-region" in codes(plan)
+
+
+def test_number_without_a_plan_is_refused_with_the_plans(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"no plan 3; the drawing holds 2: 1 from \(0, 0\)"):
+        plan_of(sheet(), tmp_path, plan=3)
+
+
+def test_region_without_area_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no area"):
+        plan_of(sheet(), tmp_path, region=(0.0, 0.0, 0.0, 5.0))
+
+
+def test_columns_far_apart_in_one_hall_stay_together(tmp_path: Path) -> None:
+    document = drawing()
+    for x in (1000, 9000):
+        for y in (1000, 9000):
+            rectangle(document.modelspace(), x, y, x + 300, y + 300, layer="COLUMN")
+    plan = plan_of(document, tmp_path)
+    assert len(standing(plan, "COLUMN")) == 4
+    assert "several-plans" not in codes(plan)
+
+
+def test_layout_is_read_where_model_space_is_empty(tmp_path: Path) -> None:
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = MM
+    layout = document.layouts.new("Ground floor")
+    corners = [(0, 0), (5000, 0), (5000, 4000), (0, 4000)]
+    layout.add_lwpolyline(corners, close=True, dxfattribs={"layer": "FLOOR"})
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == 5000 * 4000
+    assert "paper-space" in codes(plan)
+
+
+def with_foreign(kind: str, layer: str) -> str:
+    """A drawing with an object of another program that carries no picture of itself."""
+    import io
+
+    stream = io.StringIO()
+    document = drawing()
+    document.modelspace().add_point((1, 1), dxfattribs={"layer": "MARKER"})
+    document.write(stream)
+    text = stream.getvalue()
+    end = text.index("POINT\n", text.index("ENTITIES"))
+    start = text.rindex("  0\n", 0, end)
+    stop = text.index("  0\n", end)
+    point = text[start:stop]
+    foreign = f"  0\n{kind}\n  5\nFEED\n100\nAcDbEntity\n  8\n{layer}\n100\nForeignPart\n"
+    return text.replace(point, foreign)
+
+
+@pytest.mark.parametrize(
+    ("kind", "layer"), [("TCH_WALL", "XYZ"), ("TCH_SPACE", "WALL"), ("ACAD_PROXY_ENTITY", "柱")]
+)
+def test_foreign_object_that_may_stop_the_robot_is_refused(
+    kind: str, layer: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "plan.dxf"
+    path.write_text(with_foreign(kind, layer), encoding="utf-8")
+    from satAOI_adapters.dxf_read import ReadOptions, read
+
+    with pytest.raises(DrawingError, match="T3") as caught:
+        read(path, ReadOptions())
+    assert f"1 {kind} on layer '{layer}'" in str(caught.value)
+
+
+def test_foreign_object_elsewhere_is_said(tmp_path: Path) -> None:
+    path = tmp_path / "plan.dxf"
+    path.write_text(with_foreign("TCH_TEXT", "XYZ"), encoding="utf-8")
+    from satAOI_adapters.dxf_read import ReadOptions, read
+
+    assert "entity-unread" in codes(read(path, ReadOptions()))
+
+
+def with_xref() -> Drawing:
+    document = drawing()
+    document.add_xref_def(filename="..\\shared\\base.dwg", name="base")
+    document.modelspace().add_blockref("base", (2000, 1000), {"layer": "XREF-LAYER"})
+    return document
+
+
+def test_missing_external_reference_is_refused_with_its_file(tmp_path: Path) -> None:
+    with pytest.raises(DrawingError, match=r"base\.dwg.*--xref-dir"):
+        plan_of(with_xref(), tmp_path)
+
+
+def test_external_reference_is_read_from_the_folder_given(tmp_path: Path) -> None:
+    folder = tmp_path / "shared"
+    folder.mkdir()
+    base = ezdxf.new("R2010")
+    rectangle(base.modelspace(), 0, 0, 300, 400, layer="COLUMN")
+    base.saveas(folder / "Base.dxf")
+    plan = plan_of(with_xref(), tmp_path, xref_dir=folder)
+    (column,) = standing(plan, "base|COLUMN")
+    assert column.region().bounds == (2000, 1000, 2300, 1400)
+
+
+def test_external_reference_that_the_layer_file_ignores_may_be_missing(tmp_path: Path) -> None:
+    layers = tmp_path / "office.toml"
+    layers.write_text('[blocks]\nignore = ["base"]\n', encoding="utf-8")
+    plan = plan_of(with_xref(), tmp_path, layers=layers)
+    assert "xref-missing" in codes(plan)
+
+
+def test_folder_of_references_must_exist(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="nowhere"):
+        plan_of(with_xref(), tmp_path, xref_dir=tmp_path / "nowhere")
