@@ -144,6 +144,18 @@ def _write_dxf(path: Path, result: Result) -> None:
     dxf_write.write(path, result)
 
 
+def _write_ifc(path: Path, result: Result) -> None:
+    from satAOI_adapters import ifc_write
+
+    ifc_write.write(path, result)
+
+
+def _write_bcf(path: Path, result: Result) -> None:
+    from satAOI_adapters import bcf_write
+
+    bcf_write.write(path, result)
+
+
 def _write_png(path: Path, result: Result) -> None:
     from satAOI_adapters import raster_write
 
@@ -174,7 +186,13 @@ READERS: Final[dict[str, Reader]] = {".dxf": _read_dxf, ".ifc": _read_ifc}
 INSPECTORS: Final[dict[str, Inspector]] = {".dxf": _inspect_dxf, ".ifc": _inspect_ifc}
 """Suffix, in lower case, to the function that tells how such a file is read."""
 
-WRITERS: Final[dict[str, Writer]] = {".dxf": _write_dxf, ".png": _write_png, ".npz": _write_npz}
+WRITERS: Final[dict[str, Writer]] = {
+    ".dxf": _write_dxf,
+    ".ifc": _write_ifc,
+    ".bcf": _write_bcf,
+    ".png": _write_png,
+    ".npz": _write_npz,
+}
 """Suffix, in lower case, to the function that writes such a file."""
 
 ROUTE_WRITERS: Final[dict[str, RouteWriter]] = {
