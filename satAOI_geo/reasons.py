@@ -111,16 +111,24 @@ def unreached(
     sets = list(wider.values())
     areas = run_threads(lambda k: area(sets[k], lattice, robot.disc_radius_mm), len(sets))
     covered = {reason: _region(one) for reason, one in zip(wider, areas, strict=True)}
+    parts = polygons_in([rest])
+
+    def divided(number: int) -> tuple[list[tuple[Reason, Polygon]], Region]:
+        """The pieces of a part with their reasons, and what is too narrow to be a piece."""
+        broad = _opened(parts[number], NARROW_CELLS * lattice.step_mm)
+        pieces = [
+            piece for one in polygons_in([broad]) for piece in _split(one, covered, lattice.step_mm)
+        ]
+        return pieces, as_region(parts[number].difference(broad))
+
+    answers = run_threads(divided, len(parts))
+    pieces = [piece for of_a_part, _ in answers for piece in of_a_part]
     blockers = _Blockers(plan)
-    broad = _opened(rest, NARROW_CELLS * lattice.step_mm)
-    parts = polygons_in([broad])
-    split = run_threads(lambda k: list(_split(parts[k], covered, lattice.step_mm)), len(parts))
-    pieces = [one for of_a_part in split for one in of_a_part]
     crumb_mm2 = lattice.step_mm**2
     patches = [blockers.patch(piece, reason) for reason, piece in pieces if piece.area >= crumb_mm2]
     patches.sort(key=lambda patch: (-patch.area_mm2, patch.label_mm))
     crumbs = [piece for _, piece in pieces if piece.area < crumb_mm2]
-    strips = as_region(shapely.union_all([rest.difference(broad), *crumbs]))
+    strips = as_region(shapely.union_all([*(narrow for _, narrow in answers), *crumbs]))
     if strips.area > 0:
         patches.append(blockers.patch(strips, Reason.DISC, narrow=True))
     return tuple(patches)
