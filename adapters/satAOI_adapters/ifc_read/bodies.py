@@ -11,13 +11,16 @@ import ifcopenshell.geom
 import numpy as np
 import numpy.typing as npt
 from ifcopenshell import entity_instance, ifcopenshell_wrapper
+from shapely.errors import ShapelyError
 
 from satAOI_adapters.ifc_read.meshes import DEFLECTION_MM, GROWTH_MM, Mesh
-from satAOI_adapters.ifc_read.model import body_items, openings_of
+from satAOI_adapters.ifc_read.model import body_items, handle_of, openings_of
 from satAOI_adapters.ifc_read.placement import (
+    UP,
     axis_placement,
     mapping_matrix,
     point_mm,
+    unit_vector,
     world_matrix,
 )
 from satAOI_adapters.ifc_read.prisms import Prism, Stack, View, as_polygon, merged, stack_of
@@ -30,6 +33,7 @@ MALFORMED: Final = (
     AttributeError,
     LookupError,
     RuntimeError,
+    ShapelyError,
     TypeError,
     ValueError,
 )
@@ -82,6 +86,9 @@ POINT_DEFINED: Final = (
     "IfcTessellatedFaceSet",
 )
 """Items with plane faces whose corners are points in the item's own coordinates."""
+
+
+NOTHING: Final = "the geometry kernel made nothing of it"
 
 
 class NoBodyError(ValueError):
@@ -181,6 +188,8 @@ class BodyReader:
         if not boxes:
             return None
         corners_mm = np.concatenate(boxes)
+        if not np.isfinite(corners_mm).all():
+            return None
         return Extent(corners_mm.min(axis=0), corners_mm.max(axis=0))
 
     def _corners(self, item: entity_instance, matrix: FloatArray) -> FloatArray:
@@ -214,15 +223,14 @@ class BodyReader:
             return self._exact(items, openings, matrix, view)
         except MALFORMED as error:
             why = str(error)
-        if not openings:
-            return self._by_item(items, matrix, view)
-        voids = self._plain_voids(openings, view)
         try:
-            return replace(self.meshed(product), voids=voids, why_meshed=why)
-        except NoBodyError as error:
-            uncut = self._by_item(items, matrix, view)
-            flaw = f"its openings were not cut: {error}"
-            return replace(uncut, voids=voids, flaws=(*uncut.flaws, flaw))
+            if not openings:
+                return self._by_item(items, matrix, view)
+            return self._with_openings(product, matrix, view, why)
+        except NoBodyError:
+            raise
+        except MALFORMED as error:
+            raise NoBodyError(f"it does not follow its schema ({error})") from error
 
     def voids(self, opening: entity_instance, view: View) -> list[Prism]:
         """The prisms that an opening takes away.
@@ -236,8 +244,20 @@ class BodyReader:
         void = merged(stacks)
         if void.subs:
             raise NotExactError("an opening with a cut of its own")
-        owner = {"handle": opening.GlobalId, "layer": opening.is_a()}
+        owner = {"handle": handle_of(opening), "layer": opening.is_a()}
         return [replace(prism, **owner) for prism in void.adds]
+
+    def _with_openings(
+        self, product: entity_instance, matrix: FloatArray, view: View, why: str
+    ) -> Body:
+        """The kernel's mesh, openings cut out; without its openings rather than not at all."""
+        voids = self._plain_voids(list(openings_of(product)), view)
+        try:
+            return replace(self.meshed(product), voids=voids, why_meshed=why)
+        except MALFORMED as error:
+            uncut = self._by_item(body_items(product), matrix, view)
+            flaw = f"its openings were not cut: {error}"
+            return replace(uncut, voids=voids, flaws=(*uncut.flaws, flaw))
 
     def _plain_voids(self, openings: list[entity_instance], view: View) -> tuple[Prism, ...]:
         """The openings that are prisms."""
@@ -312,11 +332,13 @@ class BodyReader:
         except RuntimeError as error:
             raise NoBodyError(str(error).splitlines()[0]) from error
         made = getattr(made, "geometry", made)
+        if made is None:
+            raise NoBodyError(NOTHING)
         # the kernel works in metres whatever the model's unit
         corners_mm = np.array(made.verts, dtype=np.float64).reshape(-1, 3) * MM_PER_UNIT["m"]
         triangles = np.array(made.faces, dtype=np.int64).reshape(-1, 3)
         if not len(triangles) or not np.isfinite(corners_mm).all():
-            raise NoBodyError("the geometry kernel made nothing of it")
+            raise NoBodyError(NOTHING)
         flaws = tuple(
             sorted(
                 {m.message for m in self._log.log_messages() if m.severity >= self._log.LOG_ERROR}
@@ -366,8 +388,7 @@ def _extrusion_corners(item: entity_instance, units: Units) -> FloatArray:
     region = as_polygon(profile_of(item.SweptArea, units).shape(outward=True), outward=True)
     left_mm, bottom_mm, right_mm, top_mm = region.bounds
     base_mm = _box_corners(np.array(((left_mm, bottom_mm, 0.0), (right_mm, top_mm, 0.0))))
-    ratios = np.asarray(item.ExtrudedDirection.DirectionRatios, dtype=np.float64)
-    sweep_mm = ratios / np.linalg.norm(ratios) * item.Depth * units.mm
+    sweep_mm = unit_vector(item.ExtrudedDirection, UP) * item.Depth * units.mm
     return np.concatenate((base_mm, base_mm + sweep_mm)) @ placed[:3, :3].T + placed[:3, 3]
 
 

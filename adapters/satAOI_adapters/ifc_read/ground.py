@@ -23,7 +23,7 @@ from satAOI_adapters.ifc_read.floor import (
     floor_region,
     open_cuts,
 )
-from satAOI_adapters.ifc_read.model import Storey, body_items, openings_of
+from satAOI_adapters.ifc_read.model import Storey, body_items, handle_of, openings_of
 from satAOI_adapters.ifc_read.prisms import RECESS_MM, View, as_polygon
 from satAOI_adapters.ifc_read.site import Site
 from satAOI_geo.errors import EmptyPlanError
@@ -159,14 +159,14 @@ def _cuts_of_bodiless(
                 continue
             for shape in shapes:
                 if not isinstance(shape, LineString):
-                    yield Cut(shape, opening.GlobalId, opening.is_a())
+                    yield Cut(shape, handle_of(opening), opening.is_a())
 
 
 def _spaces(site: Site, height_mm: float) -> Region | None:
     """The union of the spaces that stand at a height and of the doorways between them."""
     view = View(height_mm + STEP_MM, height_mm + 2 * STEP_MM, outward=False)
     rooms: list[BaseGeometry] = []
-    for space in sorted(site.model.by_type("IfcSpace"), key=lambda space: str(space.GlobalId)):
+    for space in sorted(site.model.by_type("IfcSpace"), key=handle_of):
         extent = site.reader.extent(space)
         if extent is not None and abs(extent.least_mm[2] - height_mm) > RANGE_MM:
             continue

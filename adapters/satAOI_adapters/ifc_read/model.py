@@ -141,7 +141,7 @@ def storeys_of(
     Raises:
         UnreadableError: If the placement of a storey cannot be resolved.
     """
-    entities = sorted(model.by_type("IfcBuildingStorey"), key=lambda storey: str(storey.GlobalId))
+    entities = sorted(model.by_type("IfcBuildingStorey"), key=handle_of)
     placed_mm = [_placed_mm(storey, mm, broken) for storey in entities]
     stated_mm = [None if s.Elevation is None else s.Elevation * mm for s in entities]
     findings: list[Finding] = []
@@ -160,7 +160,7 @@ def storeys_of(
         Storey(
             number=number,
             name=printable(entity.Name or ""),
-            handle=entity.GlobalId,
+            handle=handle_of(entity),
             elevation_mm=elevation_mm,
             attribute_mm=attribute_mm,
             counts=dict(counts[entity.id()]),
@@ -185,7 +185,7 @@ def _contradiction(storey: entity_instance, attribute_mm: float, used_mm: float)
         f"{attribute_mm:g} mm; the placement was used",
         "give --floor-z if the other height is meant",
         layer="IfcBuildingStorey",
-        handle=storey.GlobalId,
+        handle=handle_of(storey),
     )
 
 
@@ -207,7 +207,7 @@ def _placed_mm(storey: entity_instance, mm: float, broken: Mapping[int, str]) ->
             f"the placement of storey '{printable(storey.Name or '')}' cannot be used: {why}; "
             "repair it in the program that made the model",
             layer="IfcBuildingStorey",
-            handle=storey.GlobalId,
+            handle=handle_of(storey),
         )
     return height_mm
 
@@ -219,9 +219,11 @@ def flaw_of(product: entity_instance, broken: Mapping[int, str]) -> str:
         product: The product.
         broken: Ids of entities with what is broken about them.
     """
-    if not broken:
-        return ""
-    for root in (product.ObjectPlacement, product.Representation):
+    roots = (product.ObjectPlacement, product.Representation)
+    for root, name in zip(roots, ("IfcObjectPlacement", "IfcProductRepresentation"), strict=True):
+        if root is not None and not root.is_a(name):
+            return f"it has an {root.is_a()} for an {name}"
+    for root in roots if broken else ():
         if root is not None:
             for part in product.file.traverse(root):
                 if part.id() in broken:
@@ -292,7 +294,7 @@ def candidates(model: ifcopenshell.file, choice: Choice) -> list[entity_instance
         for product in model.by_type(name)
         if name != "IfcElement" or not product.is_a("IfcFeatureElementSubtraction")
     }
-    return sorted(found.values(), key=lambda product: (str(product.GlobalId), product.id()))
+    return sorted(found.values(), key=lambda product: (handle_of(product), product.id()))
 
 
 def body_items(product: entity_instance) -> list[entity_instance]:
@@ -325,8 +327,14 @@ SOLID_TYPES: Final = frozenset(
 """Representation types that are a body where none is called Body."""
 
 
+def handle_of(product: entity_instance) -> str:
+    """A product's GlobalId, or an empty string where it has none although it must."""
+    return str(product.GlobalId or "")
+
+
 def openings_of(element: entity_instance) -> Iterator[entity_instance]:
     """The openings cut into an element and into the wholes that it is a part of."""
     for host in (element, *wholes_of(element)):
         for relation in getattr(host, "HasOpenings", ()):
-            yield relation.RelatedOpeningElement
+            if relation.RelatedOpeningElement is not None:
+                yield relation.RelatedOpeningElement

@@ -12,6 +12,8 @@ from ifcopenshell import entity_instance
 
 from satAOI_geo.plan import FloatArray
 
+UP: Final = (0.0, 0.0, 1.0)
+
 MAX_NESTING: Final = 200
 """Deeper chains of placements than in any building; only a cycle is this long."""
 
@@ -26,6 +28,17 @@ def world_matrix(placement: entity_instance | None, mm_per_unit: float) -> Float
     Raises:
         PlacementError: If the placement cannot be resolved.
     """
+    try:
+        matrix = _resolved(placement, mm_per_unit)
+    except (AttributeError, TypeError) as error:
+        # a reference to nothing, or to an entity of another kind
+        raise PlacementError(f"it does not follow its schema ({error})") from error
+    if not np.isfinite(matrix).all():
+        raise PlacementError("it is not finite")
+    return matrix
+
+
+def _resolved(placement: entity_instance | None, mm_per_unit: float) -> FloatArray:
     matrix = np.eye(4)
     for _ in range(MAX_NESTING):
         if placement is None:
@@ -46,12 +59,12 @@ def axis_placement(axes: entity_instance | None, mm_per_unit: float) -> FloatArr
     if axes is None:
         return np.eye(4)
     if axes.is_a("IfcAxis2Placement3D"):
-        z_axis = _direction(axes.Axis, (0.0, 0.0, 1.0))
+        z_axis = unit_vector(axes.Axis, UP)
     elif axes.is_a("IfcAxis2Placement2D"):
-        z_axis = np.array((0.0, 0.0, 1.0))
+        z_axis = np.array(UP)
     else:
         raise PlacementError(f"{axes.is_a()} #{axes.id()} is not supported")
-    x_axis = _direction(axes.RefDirection, (1.0, 0.0, 0.0))
+    x_axis = unit_vector(axes.RefDirection, (1.0, 0.0, 0.0))
     return _frame(z_axis, x_axis, point_mm(axes.Location, mm_per_unit))
 
 
@@ -83,11 +96,11 @@ def operator_matrix(operator: entity_instance, mm_per_unit: float) -> FloatArray
     Raises:
         PlacementError: If its axes are void.
     """
-    x_axis = _direction(operator.Axis1, (1.0, 0.0, 0.0))
-    y_axis = _direction(operator.Axis2, (0.0, 1.0, 0.0))
+    x_axis = unit_vector(operator.Axis1, (1.0, 0.0, 0.0))
+    y_axis = unit_vector(operator.Axis2, (0.0, 1.0, 0.0))
     third = getattr(operator, "Axis3", None)
     plane = operator.is_a("IfcCartesianTransformationOperator2D")
-    z_axis = np.array((0.0, 0.0, 1.0)) if plane else _direction(third, (0.0, 0.0, 1.0))
+    z_axis = np.array(UP) if plane else unit_vector(third, UP)
     matrix = _frame(z_axis, x_axis, point_mm(operator.LocalOrigin, mm_per_unit))
     if operator.Axis2 is not None and matrix[:3, 1] @ y_axis < 0:
         matrix[:3, 1] *= -1
@@ -97,7 +110,12 @@ def operator_matrix(operator: entity_instance, mm_per_unit: float) -> FloatArray
     return matrix
 
 
-def _direction(direction: entity_instance | None, default: tuple[float, ...]) -> FloatArray:
+def unit_vector(direction: entity_instance | None, default: tuple[float, ...]) -> FloatArray:
+    """An IfcDirection with length 1, shape (3,); the default for none.
+
+    Raises:
+        PlacementError: If it has no length.
+    """
     vector = np.zeros(3)
     ratios = default if direction is None else direction.DirectionRatios
     vector[: len(ratios)] = ratios

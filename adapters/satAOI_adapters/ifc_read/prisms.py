@@ -21,7 +21,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.ifc_read.curves import circle_chain, polygon
-from satAOI_adapters.ifc_read.placement import axis_placement, mapping_matrix
+from satAOI_adapters.ifc_read.placement import UP, axis_placement, mapping_matrix, unit_vector
 from satAOI_adapters.ifc_read.profiles import NotExactError, Profile, Units, profile_of
 from satAOI_geo.plan import Circle, FloatArray, polygons_in
 
@@ -151,8 +151,10 @@ def stack_of(item: entity_instance, matrix: FloatArray, units: Units, view: View
 
 def _extrusion(item: entity_instance, matrix: FloatArray, units: Units, view: View) -> Stack:
     placed = matrix @ axis_placement(item.Position, units.mm)
-    ratios = np.asarray(item.ExtrudedDirection.DirectionRatios, dtype=np.float64)
-    sweep_mm = placed[:3, :3] @ (ratios / np.linalg.norm(ratios)) * item.Depth * units.mm
+    along = unit_vector(item.ExtrudedDirection, UP)
+    sweep_mm = placed[:3, :3] @ along * item.Depth * units.mm
+    if not (np.isfinite(placed).all() and np.isfinite(sweep_mm).all()):
+        raise NotExactError("IfcExtrudedAreaSolid that is not finite")
     profile = profile_of(item.SweptArea, units)
     if _is_upright(sweep_mm):
         return Stack((_upright_prism(profile, placed, sweep_mm[2], view),))

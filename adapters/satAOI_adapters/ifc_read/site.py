@@ -14,7 +14,7 @@ from shapely.geometry.base import BaseGeometry
 from satAOI_adapters.ifc_read.bodies import MALFORMED, Body, BodyReader, Extent, NoBodyError
 from satAOI_adapters.ifc_read.classes import Choice, blocks
 from satAOI_adapters.ifc_read.floor import Top, tops_of
-from satAOI_adapters.ifc_read.model import body_items, candidates, printable
+from satAOI_adapters.ifc_read.model import body_items, candidates, handle_of, printable
 from satAOI_adapters.ifc_read.placement import world_matrix
 from satAOI_adapters.ifc_read.prisms import View
 from satAOI_adapters.ifc_read.profiles import Units
@@ -43,7 +43,7 @@ class Notes:
         self, code: str, message: str, remedy: str, product: entity_instance | None = None
     ) -> None:
         """Note something about the model or about one product."""
-        layer, handle = ("", "") if product is None else (product.is_a(), product.GlobalId)
+        layer, handle = ("", "") if product is None else (product.is_a(), handle_of(product))
         self.others.append(Finding(code, message, remedy, layer=layer, handle=handle))
 
     def fail(self, product: entity_instance, why: str) -> None:
@@ -55,7 +55,7 @@ class Notes:
                 "repair it in the program that made the model; until then the area may reach "
                 "over it",
                 layer=product.is_a(),
-                handle=product.GlobalId,
+                handle=handle_of(product),
             )
         )
 
@@ -160,11 +160,20 @@ class Site:
                 self.begin(product)
                 try:
                     body = self.reader.body(product, view)
-                except NoBodyError:
-                    # if it is in the way, it is named where obstacles are read
-                    continue
-                tops.extend(tops_of(body, product.GlobalId, product.is_a()))
+                    tops.extend(tops_of(body, handle_of(product), product.is_a()))
+                except MALFORMED as error:
+                    self._note_no_top(product, str(error))
         return tops
+
+    def _note_no_top(self, product: entity_instance, why: str) -> None:
+        # what has no body of its own leaves it to its parts, or to its openings
+        if body_items(product):
+            self.notes.add(
+                "no-top",
+                f"{called(product)} may be floor but cannot be read: {why}",
+                "repair it in the program that made the model",
+                product,
+            )
 
     def standing(self, product: entity_instance, low_mm: float, high_mm: float) -> Standing | None:
         """What a product has between two heights; None for nothing.
@@ -177,20 +186,20 @@ class Site:
         self.begin(product)
         view = View(low_mm, high_mm, outward=True)
         body = self.reader.body(product, view)
-        shapes = tuple(body.in_band(view))
-        if not shapes:
+        try:
+            standing = Standing(product, body, tuple(body.in_band(view)))
+            bounds_mm = standing.region().bounds
+        except MALFORMED as error:
+            raise NoBodyError(f"its section cannot be made ({error})") from error
+        if not standing.shapes:
             return None
-        standing = Standing(product, body, shapes)
-        if (
-            not np.isfinite(standing.region().bounds).all()
-            or max(map(abs, standing.region().bounds)) > FAR_MM
-        ):
+        if max(map(abs, bounds_mm)) > FAR_MM:
             raise NoBodyError("it lies more than 1000 km away")
         return standing
 
 
 def _note_repeated(products: Sequence[entity_instance], notes: Notes) -> None:
-    for handle, count in Counter(product.GlobalId for product in products).items():
+    for handle, count in Counter(handle_of(product) for product in products).items():
         if count > 1:
             notes.add(
                 "repeated-globalid",

@@ -12,7 +12,7 @@ from satAOI_adapters.ifc_read.bodies import Body, NoBodyError
 from satAOI_adapters.ifc_read.classes import blocks, kind_of
 from satAOI_adapters.ifc_read.floor import STEP_MM, closing
 from satAOI_adapters.ifc_read.ground import Ground, ground_of
-from satAOI_adapters.ifc_read.model import Storey, body_items
+from satAOI_adapters.ifc_read.model import Storey, body_items, handle_of
 from satAOI_adapters.ifc_read.site import Site, Standing, called
 from satAOI_geo.errors import DrawingError, EmptyPlanError
 from satAOI_geo.plan import Finding, Kind, Obstacle, Region, polygons_in
@@ -112,7 +112,7 @@ def _on(thing: Standing, floor: Region) -> Standing:
 
 def _low_mm(product: entity_instance, ground: Ground) -> float:
     """From which height on a product is in the way."""
-    if product.GlobalId in ground.handles:
+    if handle_of(product) in ground.handles:
         return ground.height_mm + STEP_MM
     if kind_of(product) is Kind.EMBEDDED:
         return ground.height_mm - FLUSH_MM
@@ -211,7 +211,7 @@ def _obstacles(site: Site, standing: Sequence[Standing]) -> Iterator[Obstacle]:
         product = thing.product
         kind = kind_of(product)
         for shape in thing.shapes:
-            yield Obstacle(shape, kind, product.is_a(), product.GlobalId)
+            yield Obstacle(shape, kind, product.is_a(), handle_of(product))
         if thing.body.meshes:
             growth_mm = max(mesh.growth_mm for mesh in thing.body.meshes)
             grown = f", grown by {growth_mm:g} mm" if growth_mm else ""

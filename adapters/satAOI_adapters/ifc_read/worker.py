@@ -19,6 +19,7 @@ from satAOI_adapters.ifc_read.model import (
     Storey,
     chosen_storey,
     flaw_of,
+    handle_of,
     open_model,
     storeys_of,
     units_of,
@@ -123,7 +124,7 @@ class Worker:
 
     def _unfit(self, product: entity_instance) -> str:
         """Why a product must not be read, or an empty string."""
-        if product.GlobalId in self._request.skip:
+        if handle_of(product) in self._request.skip:
             return "its geometry ended the process that reads it"
         return flaw_of(product, self._broken)
 
@@ -131,7 +132,7 @@ class Worker:
         self._n_begun += 1
         self._say(
             Begun(
-                handle=product.GlobalId,
+                handle=handle_of(product),
                 layer=product.is_a(),
                 share=min(1.0, self._n_begun / self._n_products),
             )
