@@ -61,6 +61,8 @@ EXIT_CODES: Final[dict[type[SatAoiError], int]] = {
 
 STANDARD_OUTPUT: Final = Path("-")
 IFC: Final = ".ifc"
+ONLY_FROM_IFC: Final = {".ifc", ".bcf"}
+"""Outputs that add to the model that the plan was read from."""
 
 EPILOG: Final = (
     "Exit codes: 0 done; 1 findings, with --strict; 2 usage; 3 drawing unusable; "
@@ -139,7 +141,7 @@ def run(*, plan: Path, quiet: bool, **options: Unpack[RunOptions]) -> int:
 
     Without --output, --report and --raster the figures are printed and nothing is written.
     """
-    refuse_early(options, read=[plan, Path(options["robot"]), options["layers"]])
+    refuse_early(plan, options, read=[plan, Path(options["robot"]), options["layers"]])
     result = answer(plan, options, exact_outline=options["exact_outline"], quiet=quiet)
     write(result, options)
     tell(result, options, quiet=quiet)
@@ -341,18 +343,19 @@ def refuse_options_of_other_formats(path: Path, options: Reading) -> None:
         raise InputError(f"{given[0]} says nothing about a plan in {format_name}; leave it out")
 
 
-def refuse_early(outputs: Outputs, read: list[Path | None]) -> None:
+def refuse_early(plan: Path, outputs: Outputs, read: list[Path | None]) -> None:
     """Refuse outputs that could not be written, before any work is done for them.
 
     Raises:
-        InputError: If one has a suffix that no writer knows, is an input, is asked for twice, or
-            cannot be a file at all.
+        InputError: If one has a suffix that no writer knows or that does not go with the plan's,
+            is an input, is asked for twice, or cannot be a file at all.
     """
     from satAOI_adapters import writer_of
 
-    for path in (outputs["output"], outputs["raster"]):
-        if path is not None:
-            writer_of(path)
+    for path in areas_of(outputs):
+        writer_of(path)
+        if path.suffix.lower() in ONLY_FROM_IFC and plan.suffix.lower() != IFC:
+            raise InputError(f"'{path}' adds to an IFC model, and '{plan}' is none; write a DXF")
     refuse_targets(files_of(outputs), read)
 
 
@@ -372,24 +375,24 @@ def refuse_targets(files: Sequence[Path], read: list[Path | None]) -> None:
         seen.append(path.absolute())
 
 
-def asked_for(outputs: Outputs) -> list[Path]:
-    """The outputs that are asked for."""
-    all_of_them = (outputs["output"], outputs["report"], outputs["raster"])
-    return [path for path in all_of_them if path is not None]
+def areas_of(outputs: Outputs) -> list[Path]:
+    """The files that the area of interest is written to."""
+    raster = outputs["raster"]
+    return [*outputs["output"], *([] if raster is None else [raster])]
 
 
 def files_of(outputs: Outputs) -> list[Path]:
-    """The files to be written."""
-    return [path for path in asked_for(outputs) if path != STANDARD_OUTPUT]
+    """All files to be written."""
+    report = outputs["report"]
+    return [*areas_of(outputs), *([] if report in {None, STANDARD_OUTPUT} else [report])]
 
 
 def write(result: "Result", outputs: Outputs) -> None:
     """Write what was asked for, each file whole or not at all."""
     from satAOI_adapters import report_write, write_aoi
 
-    for path in (outputs["output"], outputs["raster"]):
-        if path is not None:
-            write_aoi(path, result)
+    for path in areas_of(outputs):
+        write_aoi(path, result)
     if outputs["report"] == STANDARD_OUTPUT:
         click.echo(report_write.json_of(result.report), nl=False)
     elif outputs["report"] is not None:
@@ -404,7 +407,7 @@ def tell(result: "Result", outputs: Outputs, *, quiet: bool) -> None:
     from satAOI_adapters.report_write import lines_of
     from satAOI_adapters.terminal import say_findings, say_note, write_table
 
-    alone = not asked_for(outputs)
+    alone = not areas_of(outputs) and outputs["report"] is None
     if alone:
         write_table(lines_of(result.report), sys.stdout)
     if quiet:

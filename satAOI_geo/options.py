@@ -73,9 +73,9 @@ PLAN: Final[Group] = (click.argument("plan", type=FILE),)
 
 
 class Outputs(TypedDict):
-    """Where the results go; None where one is not asked for, `-` for standard output."""
+    """Where the results go; none where nothing is asked for, `-` for standard output."""
 
-    output: Path | None
+    output: tuple[Path, ...]
     report: Path | None
     raster: Path | None
 
@@ -84,10 +84,13 @@ OUTPUTS: Final[Group] = (
     click.option(
         "-o",
         "--output",
-        metavar="FILE.dxf",
+        metavar="FILE.dxf|.ifc|.bcf",
         type=FILE,
+        multiple=True,
         panel="Outputs",
-        help="Draw the area of interest into a copy of the plan, e.g. --output aoi.dxf",
+        help="Draw the area of interest into a copy of the plan, e.g. --output aoi.dxf; of a plan "
+        "from an IFC model also as zones in a copy of the model, or as BCF topics on what is not "
+        "reached. May be given several times.",
     ),
     click.option(
         "--report",
@@ -347,7 +350,7 @@ ROUTE_OUTPUT: Final[Group] = (
         multiple=True,
         panel="Outputs",
         help="Draw the robot on its way into a copy of the plan, e.g. --output route.dxf, or "
-        "write all its poses; may be given twice.",
+        "write all its poses. May be given several times.",
     ),
 )
 

@@ -114,10 +114,30 @@ def test_talk_goes_to_standard_error_and_quiet_ends_it(
 
 
 def test_every_output_is_written(room: Path) -> None:
-    names = {"aoi.dxf", "aoi.json", "aoi.npz"}
-    drawing, report, raster = (str(room.with_name(name)) for name in sorted(names))
-    assert main([str(room), "-o", drawing, "--report", report, "--raster", raster]) == 0
+    names = {"aoi.dxf", "aoi.json", "aoi.npz", "aoi.png"}
+    drawing, report, array, picture = (str(room.with_name(name)) for name in sorted(names))
+    outputs = ["-o", drawing, "-o", picture, "--report", report, "--raster", array]
+    assert main([str(room), *outputs]) == 0
     assert {file.name for file in room.parent.iterdir()} == {room.name, *names}
+
+
+def test_a_storey_of_a_model_goes_into_a_drawing_and_back_into_the_model(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = ROOT / "samples" / "two_rooms_900.ifc"
+    drawing, zones = tmp_path / "aoi.dxf", tmp_path / "aoi.ifc"
+    outputs = ["-o", str(drawing), "-o", str(zones)]
+    assert main([str(model), "--storey", "1", "--step", "50", *outputs]) == 0
+    assert "m²" in capsys.readouterr().err
+    assert ezdxf.readfile(drawing).modelspace().query("HATCH[layer=='SATAOI-AOI']")
+    assert b"IFCSPATIALZONE" in zones.read_bytes()
+
+
+def test_an_option_of_drawings_is_refused_for_a_model(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main([str(ROOT / "samples" / "flat.ifc"), "--region", "0,0,1,1"]) == 2
+    assert "--region says nothing about a plan in IFC" in the_error(capsys)
 
 
 def test_two_runs_write_the_same_report_but_for_the_time(
@@ -220,6 +240,8 @@ def test_strict_tells_findings_by_its_exit_code(
         (["--layers", "none.toml"], 2, "none.toml"),
         (["--nonsense"], 2, "--nonsense"),
         (["-o", "aoi.odt"], 2, "must end in"),
+        (["-o", "aoi.ifc"], 2, "'aoi.ifc' adds to an IFC model, and 'room.dxf' is none"),
+        (["-o", "aoi.dxf", "-o", "aoi.dxf"], 2, "asked for twice"),
         (["-o", "nowhere/aoi.dxf"], 2, "no folder 'nowhere'"),
         (["-o", "room.dxf"], 2, "is an input"),
         (["--report", "room.dxf"], 2, "is an input"),
