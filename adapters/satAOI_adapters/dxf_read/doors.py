@@ -24,7 +24,7 @@ from satAOI_adapters.dxf_read.curves import Arc, Line, Path
 from satAOI_adapters.dxf_read.entities import Feature
 from satAOI_adapters.dxf_read.linework import PARALLEL
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
-from satAOI_geo.plan import Finding
+from satAOI_geo.plan import Finding, FloatArray
 
 JAMB_MM: Final = 300.0
 """A line that ends this close to walls on both sides spans the opening between them."""
@@ -44,34 +44,47 @@ WIDEST_RAD: Final = math.radians(190)
 PARTITION_MM: Final = 2500.0
 """A single straight line longer than this, with another beside it, is the face of a wall."""
 
+CORNER: Final = 0.5
+"""Least sine of the angle between the two sides of a wall's corner: 30°."""
+
 FACES_MM: Final = 400.0
 """The two faces of a partition are no farther apart."""
 
 
-def partitions(doors: Sequence[Feature], walls: Sequence[BaseGeometry]) -> list[Feature]:
+def partitions(
+    doors: Sequence[Feature], walls: Sequence[BaseGeometry], door_blocks: frozenset[str]
+) -> list[Feature]:
     """The lines on door layers that are faces of walls.
 
-    They are open, straight and outside any block. Joined at their ends they turn a corner between
-    two sides longer than a leaf; or one alone is longer than any opening, has a parallel one
-    beside it, and does not span an opening from wall to wall as the line of a garage door does.
+    They are open, straight, in no door's block and longer than a leaf. Joined at their ends they
+    turn a corner with another such line; or one alone is longer than any opening, has a parallel
+    one beside it, and does not span an opening from wall to wall as a garage door's line does.
+
+    Args:
+        doors: What is drawn on door layers.
+        walls: Walls that are known already.
+        door_blocks: Names of blocks that are doors.
     """
     loose = [
-        (feature, LineString((piece.start, piece.end)))
+        (feature, piece)
         for feature in doors
         for path in feature.paths
-        if path.is_straight and not (feature.placed.blocks or path.closed)
+        if path.is_straight and not path.closed
         for piece in path.pieces
+        if isinstance(piece, Line) and door_blocks.isdisjoint(feature.placed.blocks)
     ]
     if not loose:
         return []
-    lines = [line for _, line in loose]
+    lines = [LineString((piece.start, piece.end)) for _, piece in loose]
     lengths_mm = shapely.length(lines)
-    chain = _chains(lines)
-    long_sides = np.bincount(chain, lengths_mm > LEAF_MM)
+    is_long = lengths_mm > LEAF_MM
     faces = (lengths_mm > PARTITION_MM) & ~_spanning(lines, walls) & _in_pairs(lines)
-    is_wall = (long_sides >= 2) | (np.bincount(chain, faces) > 0)
-    found = {id(f): f for (f, _), own in zip(loose, chain, strict=True) if is_wall[own]}
-    return list(found.values())
+    is_wall = is_long & (_in_corners(lines, is_long) | faces)
+    return [
+        replace(feature, paths=(Path((piece,), closed=False),))
+        for (feature, piece), wall in zip(loose, is_wall, strict=True)
+        if wall
+    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,20 +201,34 @@ def _spanning(lines: Sequence[LineString], walls: Sequence[BaseGeometry]) -> npt
     )
 
 
-def _chains(lines: Sequence[LineString]) -> npt.NDArray[np.int32]:
-    """The number of the chain, of lines that meet at their ends, that each line is in."""
+def _in_corners(
+    lines: Sequence[LineString], is_long: npt.NDArray[np.bool_]
+) -> npt.NDArray[np.bool_]:
+    """Which lines are in a chain, joined end to end, with long lines in two directions."""
     n = len(lines)
     ends = [line.coords[k] for line in lines for k in (0, -1)]
     pairs = cKDTree(ends).query_pairs(CLOSE_GAPS_MM, output_type="ndarray") // 2
     links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    return np.asarray(connected_components(links, directed=False)[1])
+    _, chain = connected_components(links, directed=False)
+    along = _directions(lines)
+    turns = np.zeros(n, dtype=bool)
+    for k in np.unique(chain[is_long]):
+        (first, *_), members = along[is_long & (chain == k)], chain == k
+        sines = along[is_long & members] @ np.array((-first[1], first[0]))
+        turns[members] = np.abs(sines).max() > CORNER
+    return turns
+
+
+def _directions(lines: Sequence[LineString]) -> FloatArray:
+    """Unit vectors along lines, shape (n, 2)."""
+    ends = np.array([(line.coords[0], line.coords[-1]) for line in lines])
+    along = ends[:, 1] - ends[:, 0]
+    return np.asarray(along / np.maximum(np.hypot(*along.T), CLOSE_GAPS_MM)[:, np.newaxis])
 
 
 def _in_pairs(lines: Sequence[LineString]) -> npt.NDArray[np.bool_]:
     """Which lines have a parallel one beside them, as the faces of a wall do."""
-    ends = np.array([(line.coords[0], line.coords[-1]) for line in lines])
-    along = ends[:, 1] - ends[:, 0]
-    along /= np.maximum(np.hypot(*along.T), CLOSE_GAPS_MM)[:, np.newaxis]
+    along = _directions(lines)
     near, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=FACES_MM)
     sines = np.abs(along[near, 0] * along[other, 1] - along[near, 1] * along[other, 0])
     long_enough = shapely.length(lines)[other] > PARTITION_MM

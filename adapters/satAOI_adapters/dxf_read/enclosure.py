@@ -17,8 +17,9 @@ from scipy.spatial import Delaunay
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from satAOI_adapters.dxf_read.entities import LOCAL_DIGITS
 from satAOI_adapters.dxf_read.linework import is_thin
-from satAOI_adapters.dxf_read.shapes import rounded, tidy
+from satAOI_adapters.dxf_read.shapes import SAME_MM, rounded, tidy
 from satAOI_geo.plan import FloatArray, Region, polygons_in
 
 OPENING_MM: Final = 2500.0
@@ -119,7 +120,7 @@ def enclosed(bounds: Sequence[BaseGeometry]) -> Region:
         The floor; empty where nothing is enclosed.
     """
     edges = [bound.boundary if isinstance(bound, Polygon) else bound for bound in bounds]
-    walls = shapely.union_all(edges)
+    walls = shapely.union_all(edges, grid_size=SAME_MM)
     if walls.is_empty:
         return MultiPolygon()
     samples = _samples(walls)
@@ -137,8 +138,17 @@ def enclosed(bounds: Sequence[BaseGeometry]) -> Region:
 def _samples(walls: BaseGeometry) -> FloatArray:
     """Points along the walls, corners included, each once."""
     spacing_mm = max(SAMPLE_MM, walls.length / MAX_SAMPLES)
-    points = shapely.get_coordinates(shapely.segmentize(walls, spacing_mm))
-    return np.unique(points, axis=0)
+    corners, owners = shapely.get_coordinates(shapely.get_parts(walls), return_index=True)
+    goes_on = owners[1:] == owners[:-1]
+    starts, ends = corners[:-1][goes_on], corners[1:][goes_on]
+    # whole multiples of the spacing are common, and turned copies miss them by a rounding
+    counts = np.ceil(np.hypot(*(ends - starts).T) / spacing_mm - 1e-6).astype(int)
+    counts = np.maximum(counts, 1)
+    first = np.repeat(np.cumsum(counts) - counts, counts)
+    shares = ((np.arange(counts.sum()) - first) / np.repeat(counts, counts))[:, np.newaxis]
+    between = np.repeat(starts, counts, axis=0) * (1 - shares)
+    between += np.repeat(ends, counts, axis=0) * shares
+    return np.unique(np.round(np.vstack((between, ends)), LOCAL_DIGITS), axis=0)
 
 
 def _dry_faces(mesh: Mesh, walls: BaseGeometry, opening_mm: float) -> list[Polygon]:
@@ -148,7 +158,8 @@ def _dry_faces(mesh: Mesh, walls: BaseGeometry, opening_mm: float) -> list[Polyg
     shapely.prepare(walls)
     middles = shapely.line_interpolate_point(rim, 0.5, normalized=True)
     seals = rim[~shapely.dwithin(middles, walls, ON_LINE_MM)]
-    noded = shapely.union_all([walls, *seals])
+    # snapped to the grid, since samples lie on oblique walls only up to rounding
+    noded = shapely.union_all([walls, *seals], grid_size=SAME_MM)
     cut = np.array(shapely.polygonize([noded]).geoms)
     faces = rounded(cut[shapely.area(cut) > CRUMB_MM2])
     if not faces:

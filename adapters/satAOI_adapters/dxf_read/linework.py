@@ -5,6 +5,7 @@ themselves stay where they were drawn.
 """
 
 import math
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -14,10 +15,11 @@ import shapely
 from scipy.spatial import cKDTree
 from shapely.geometry import LineString, Polygon
 from shapely.geometry import Point as Spot
+from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
-from satAOI_adapters.dxf_read.shapes import rounded
+from satAOI_adapters.dxf_read.shapes import SAME_MM, rounded
 from satAOI_geo.plan import polygons_in
 
 NEAR_MISS_MM: Final = 50.0
@@ -34,6 +36,9 @@ Few walls are thicker, and a room narrower than this takes in no robot of a usua
 
 PARALLEL: Final = 0.02
 """Greatest sine of the angle between the two faces of one wall: about one degree."""
+
+OVER_EACH_OTHER: Final = 1e-3
+"""Greatest sine of the angle between lines that are drawn one over the other."""
 
 SQUARE: Final = 0.85
 """Greatest cosine of the angle between a wall and its end: 32° to 148°."""
@@ -72,12 +77,13 @@ class Network:
         """What the lines enclose, cut wherever they cross."""
         if not self.lines:
             return []
-        noded = shapely.union_all(list(self.lines))
+        noded = shapely.union_all(list(self.lines), grid_size=SAME_MM)
         return rounded(polygons_in(shapely.polygonize([noded]).geoms))
 
 
 def network(lines: Sequence[LineString], gap_mm: float = CLOSE_GAPS_MM) -> Network:
     """Join line ends that are at most `gap_mm` from another end or another line."""
+    lines = [line for line in map(shapely.remove_repeated_points, lines) if line.length]
     if not lines:
         return Network((), (), 0, ())
     tree = shapely.STRtree(lines)
@@ -145,8 +151,8 @@ def _is_parallel(side: LineString, along: Point) -> bool:
     return abs(way[0] * along[1] - way[1] * along[0]) <= PARALLEL
 
 
-def is_thin(polygon: Polygon, width_mm: float = WALL_MM) -> bool:
-    """Whether no disc of this diameter fits into a polygon."""
+def is_thin(polygon: BaseGeometry, width_mm: float = WALL_MM) -> bool:
+    """Whether no disc of this diameter fits into a region."""
     return bool(polygon.buffer(-width_mm / 2).is_empty)
 
 
@@ -155,24 +161,26 @@ def _ends(lines: Sequence[LineString]) -> list[tuple[int, Point, Point]]:
 
     Lines drawn twice, or one over the other, count once.
     """
-    ways: dict[Point, set[Point]] = {}
+    ways: defaultdict[Point, list[Point]] = defaultdict(list)
     for line in lines:
         for start, end in pairwise(line.coords):
             way = _direction(start, end)
-            ways.setdefault(start, set()).add(_coarse(way))
-            ways.setdefault(end, set()).add(_coarse((-way[0], -way[1])))
+            ways[start].append(way)
+            ways[end].append((-way[0], -way[1]))
     found: dict[Point, tuple[int, Point, Point]] = {}
     for owner, line in enumerate(lines):
         points = line.coords
         for end, before in ((points[0], points[1]), (points[-1], points[-2])):
-            if len(ways[end]) == 1:
-                found.setdefault(end, (owner, end, _direction(before, end)))
+            out = _direction(before, end)
+            if all(_leads_back(way, out) for way in ways[end]):
+                found.setdefault(end, (owner, end, out))
     return list(found.values())
 
 
-def _coarse(way: Point) -> Point:
-    """A direction to a tenth of a per mille: lines drawn one over the other agree in it."""
-    return round(way[0], 4) + 0.0, round(way[1], 4) + 0.0
+def _leads_back(way: Point, out: Point) -> bool:
+    """Whether a way from an end lies over the line that ends there."""
+    along = way[0] * out[0] + way[1] * out[1]
+    return along < 0 and abs(way[0] * out[1] - way[1] * out[0]) <= OVER_EACH_OTHER
 
 
 def _nearest(

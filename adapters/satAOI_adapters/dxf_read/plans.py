@@ -12,12 +12,15 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 import shapely
+from shapely.geometry import MultiLineString
+from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Arc, Point
 from satAOI_adapters.dxf_read.entities import Feature
+from satAOI_adapters.dxf_read.linework import is_thin
 from satAOI_adapters.layers import KINDS, Meaning
 from satAOI_geo.errors import InputError
-from satAOI_geo.plan import Finding, FloatArray, Frame, polygons_in
+from satAOI_geo.plan import Finding, Frame, polygons_in
 
 Drawn: TypeAlias = dict[Meaning | None, list[Feature]]
 """What is drawn, by meaning."""
@@ -28,8 +31,8 @@ BLANK_MM: Final = 2500.0
 TOUCH_MM: Final = 1.0
 """Boxes of clusters this close overlap."""
 
-SMALLEST_MM: Final = 2000.0
-"""A cluster smaller than this, or without anything that stops the robot, is no plan."""
+SMALLEST_MM: Final = 1500.0
+"""A cluster in which no disc of this diameter fits, or that stops no robot, is no plan."""
 
 PLAN_SIGNS: Final = (Meaning.DOOR, Meaning.COLUMN, Meaning.FLOOR, Meaning.WINDOW, Meaning.WALL)
 """Meanings of which a plan shows more than a section or a roof does."""
@@ -40,21 +43,26 @@ class Cluster:
     """A part of the drawing with blank space around it.
 
     Attributes:
-        bounds_mm: Left, bottom, right, top in the plan's frame.
+        hull: What it spans, in the plan's frame; convex.
         counts: Features in it by meaning.
         n_swings: Quarter turns, such as doors draw.
     """
 
-    bounds_mm: tuple[float, float, float, float]
+    hull: BaseGeometry
     counts: Mapping[Meaning, int]
     n_swings: int
 
     @property
+    def bounds_mm(self) -> tuple[float, float, float, float]:
+        """Left, bottom, right, top in the plan's frame."""
+        left, bottom, right, top = self.hull.bounds
+        return left, bottom, right, top
+
+    @property
     def is_plan(self) -> bool:
         """Whether it may be a floor plan at all."""
-        left, bottom, right, top = self.bounds_mm
         tells = any(meaning in self.counts for meaning in (*KINDS, Meaning.FLOOR))
-        return tells and min(right - left, top - bottom) >= SMALLEST_MM
+        return tells and not is_thin(self.hull, SMALLEST_MM)
 
     @property
     def rank(self) -> tuple[int, int]:
@@ -69,16 +77,14 @@ def clusters(drawn: Drawn) -> list[Cluster]:
     pairs = [(m, feature) for m, features in drawn.items() if m is not None for feature in features]
     if not pairs:
         return []
-    boxes = np.array([feature.box() for _, feature in pairs])
-    owners = _grouped(boxes)
+    lines = np.array([_lines(feature) for _, feature in pairs])
+    owners = _grouped(lines)
     found = []
     for owner in range(owners.max() + 1):
         members = [pairs[i] for i in np.flatnonzero(owners == owner)]
-        left, bottom = boxes[owners == owner, :2].min(axis=0)
-        right, top = boxes[owners == owner, 2:].max(axis=0)
         found.append(
             Cluster(
-                (float(left), float(bottom), float(right), float(top)),
+                shapely.convex_hull(shapely.geometrycollections(lines[owners == owner])),
                 Counter(meaning for meaning, _ in members),
                 sum(_n_swings(feature) for _, feature in members),
             )
@@ -86,18 +92,14 @@ def clusters(drawn: Drawn) -> list[Cluster]:
     return sorted((c for c in found if c.is_plan), key=lambda c: c.rank, reverse=True)
 
 
-def within(drawn: Drawn, bounds_mm: tuple[float, float, float, float]) -> tuple[Drawn, int]:
-    """What is drawn in a rectangle, wholly or in part, and how much is left out."""
-    left, bottom, right, top = bounds_mm
+def within(drawn: Drawn, part: BaseGeometry) -> tuple[Drawn, int]:
+    """What is drawn in a part of the plane, wholly or partly, and how much is left out."""
+    reach = part.buffer(TOUCH_MM)
+    shapely.prepare(reach)
     kept: Drawn = {}
     n_left_out = 0
     for meaning, features in drawn.items():
-        boxes = [feature.box() for feature in features]
-        kept[meaning] = [
-            feature
-            for feature, (x0, y0, x1, y1) in zip(features, boxes, strict=True)
-            if x0 <= right and left <= x1 and y0 <= top and bottom <= y1
-        ]
+        kept[meaning] = [feature for feature in features if reach.intersects(_lines(feature))]
         n_left_out += len(features) - len(kept[meaning])
     return kept, n_left_out
 
@@ -159,24 +161,32 @@ def _n_swings(feature: Feature) -> int:
     )
 
 
-def _grouped(boxes: FloatArray) -> npt.NDArray[np.int64]:
-    """The number of the cluster that each box belongs to; boxes of clusters do not overlap."""
-    owners = _dissolved(boxes, BLANK_MM / 2)
+def _lines(feature: Feature) -> MultiLineString:
+    """What a feature draws, its curves by chords."""
+    return MultiLineString([path.chords() for path in feature.paths])
+
+
+def _grouped(lines: npt.NDArray[np.object_]) -> npt.NDArray[np.int64]:
+    """The number of the cluster that each drawn thing belongs to; hulls of clusters are apart."""
+    owners = _dissolved(shapely.buffer(lines, BLANK_MM / 2, quad_segs=2), lines)
     while True:
         n = owners.max() + 1
-        left_bottom, right_top = np.full((n, 2), np.inf), np.full((n, 2), -np.inf)
-        np.minimum.at(left_bottom, owners, boxes[:, :2])
-        np.maximum.at(right_top, owners, boxes[:, 2:])
-        merged = _dissolved(np.hstack((left_bottom, right_top)), TOUCH_MM)
+        hulls = np.array(
+            [
+                shapely.convex_hull(shapely.geometrycollections(lines[owners == owner]))
+                for owner in range(n)
+            ]
+        )
+        merged = _dissolved(shapely.buffer(hulls, TOUCH_MM, quad_segs=2), hulls)
         if merged.max() + 1 == n:
             return owners
         owners = merged[owners]
 
 
-def _dissolved(boxes: FloatArray, reach_mm: float) -> npt.NDArray[np.int64]:
-    """Numbers of the groups that boxes form when each is grown on all sides."""
-    left, bottom, right, top = boxes.T
-    grown = shapely.box(left - reach_mm, bottom - reach_mm, right + reach_mm, top + reach_mm)
+def _dissolved(
+    grown: npt.NDArray[np.object_], things: npt.NDArray[np.object_]
+) -> npt.NDArray[np.int64]:
+    """Numbers of the groups that things form whose grown shapes overlap."""
     parts = polygons_in([shapely.union_all(grown)])
-    corners = shapely.points(left, bottom)
-    return np.asarray(shapely.STRtree(parts).nearest(corners))
+    spots = shapely.point_on_surface(things)
+    return np.asarray(shapely.STRtree(parts).nearest(spots))

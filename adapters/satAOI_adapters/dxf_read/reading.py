@@ -11,7 +11,7 @@ from ezdxf.entities import Circle as CircleEntity
 from ezdxf.entities import DXFEntity, DXFGraphic, Insert
 from ezdxf.entities import Point as PointEntity
 from ezdxf.math import Vec3
-from shapely.geometry import LineString
+from shapely.geometry import LineString, box
 
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.doors import (
@@ -51,6 +51,9 @@ SOLID_KINDS: Final = (Kind.COLUMN, Kind.HOLE, Kind.EMBEDDED, Kind.EQUIPMENT)
 """Kinds whose closed outlines are solid however wide they are."""
 
 
+ON_EDGE_MM: Final = 1e-3
+"""An obstacle this close to the floor reaches it."""
+
 ShapeT = TypeVar("ShapeT", Region, Shape)
 
 
@@ -68,7 +71,7 @@ def read(path: Path, options: ReadOptions) -> FloorPlan:
     everything = drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
     drawn, choice = _chosen(everything, options, start_mm, frame)
     terms = Terms(frame, options.close_gaps_mm, drawing.is_named, _region_mm(options, frame))
-    standing = _standing(drawn, terms)
+    standing = _standing(drawn, terms, drawing.door_blocks)
     sills = spans(drawn[Meaning.DOOR], [o.region() for o in standing.obstacles])
     floor = floor_of(drawn[Meaning.FLOOR], standing.obstacles, sills, terms)
     others = unclassified(drawn[None], floor.region, standing.obstacles)
@@ -97,12 +100,12 @@ def _chosen(
     """What belongs to the plan that is read, and what is to be said about the rest."""
     region_mm = _region_mm(options, frame)
     if region_mm is not None:
-        kept, n_left_out = within(drawn, region_mm)
+        kept, n_left_out = within(drawn, box(*region_mm))
         return kept, _left_out(n_left_out, "the region")
     cluster, findings = chosen(clusters(drawn), options.plan, start_mm, frame)
     if cluster is None:
         return drawn, findings
-    kept, n_left_out = within(drawn, cluster.bounds_mm)
+    kept, n_left_out = within(drawn, cluster.hull)
     return kept, (*findings, *_left_out(n_left_out, "the plan"))
 
 
@@ -129,7 +132,7 @@ def _left_out(count: int, what: str) -> tuple[Finding, ...]:
     )
 
 
-def _standing(drawn: Drawn, terms: Terms) -> Standing:
+def _standing(drawn: Drawn, terms: Terms, door_blocks: frozenset[str]) -> Standing:
     """The obstacles of all kinds that layers name."""
     by_kind: dict[Kind, list[Feature]] = {kind: [] for kind in Kind}
     for meaning, kind in KINDS.items():
@@ -137,7 +140,7 @@ def _standing(drawn: Drawn, terms: Terms) -> Standing:
     parts = [solids(by_kind[kind], kind, terms) for kind in SOLID_KINDS]
     columns = parts[SOLID_KINDS.index(Kind.COLUMN)].obstacles
     drawn_as_walls, n_doors = without_swings(by_kind[Kind.WALL])
-    on_door_layers = partitions(drawn[Meaning.DOOR], _lines(drawn_as_walls))
+    on_door_layers = partitions(drawn[Meaning.DOOR], _lines(drawn_as_walls), door_blocks)
     edges = _lines(drawn[Meaning.FLOOR], only_closed=True)
     parts.append(walls([*drawn_as_walls, *on_door_layers], columns, edges, terms))
     return Standing(
@@ -175,7 +178,8 @@ def _lines(drawn: Sequence[Feature], *, only_closed: bool = False) -> list[LineS
 def _on(floor: Region, obstacles: Sequence[Obstacle]) -> tuple[Obstacle, ...]:
     """The obstacles that reach the floor; beyond it everything is closed to the robot anyway."""
     shapely.prepare(floor)
-    return tuple(obstacle for obstacle in obstacles if floor.intersects(obstacle.region()))
+    near = shapely.dwithin(floor, [obstacle.region() for obstacle in obstacles], ON_EDGE_MM)
+    return tuple(obstacle for obstacle, is_near in zip(obstacles, near, strict=True) if is_near)
 
 
 def _start(

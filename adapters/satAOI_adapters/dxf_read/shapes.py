@@ -21,7 +21,7 @@ from satAOI_geo.plan import Circle, FloatArray, Region, Shape, as_region, polygo
 GeometryT = TypeVar("GeometryT", bound=BaseGeometry)
 
 SAME_MM = 10.0**-LOCAL_DIGITS
-"""Centres and radii of arcs this close are one circle's: coordinates are rounded to this."""
+"""The grid of coordinates: what is this close is one."""
 
 
 def circle_of(path: Path) -> Circle | None:

@@ -22,7 +22,7 @@ from satAOI_adapters.dxf_read.plans import Drawn
 from satAOI_adapters.dxf_read.units import Unit, unit_of
 from satAOI_adapters.dxf_read.unread import missing_xrefs, unread_entities
 from satAOI_adapters.dxf_read.xrefs import xrefs_in
-from satAOI_adapters.layers import Meaning, layer_table
+from satAOI_adapters.layers import LayerTable, Meaning, layer_table
 from satAOI_geo.errors import EmptyPlanError
 from satAOI_geo.plan import Finding, FloatArray, Frame
 
@@ -45,6 +45,7 @@ class Survey:
         hidden: Entities on layers that are frozen or off, by layer.
         unit: The unit of length.
         box: Left, bottom, right, top of what is drawn, in drawing units.
+        door_blocks: Names of blocks that are doors.
         is_named: Whether layers tell what stops the robot, rather than everything being walls.
         middle: In the midst of it, in drawing units; a few strays do not move it.
         findings: What was noticed so far.
@@ -58,6 +59,7 @@ class Survey:
     unit: Unit
     box: tuple[float, float, float, float]
     middle: Point
+    door_blocks: frozenset[str]
     is_named: bool
     findings: tuple[Finding, ...]
 
@@ -132,6 +134,7 @@ def survey(path: Path, options: ReadOptions) -> Survey:
         unit=known.unit,
         box=box,
         middle=middle,
+        door_blocks=_door_blocks(seen, table),
         is_named=not fallback,
         findings=(
             *opened.findings,
@@ -143,6 +146,11 @@ def survey(path: Path, options: ReadOptions) -> Survey:
             *fallback,
         ),
     )
+
+
+def _door_blocks(seen: Iterable[Seen], table: LayerTable) -> frozenset[str]:
+    names = {name for entity in seen for name in entity.placed.blocks}
+    return frozenset(name for name in names if table.of_block(name).meaning is Meaning.DOOR)
 
 
 def _in_drawing_units(seen: Iterable[Seen]) -> list[tuple[Seen, Feature]]:

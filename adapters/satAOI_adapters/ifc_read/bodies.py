@@ -13,6 +13,7 @@ import numpy.typing as npt
 from ifcopenshell import entity_instance, ifcopenshell_wrapper
 from shapely.errors import ShapelyError
 
+from satAOI_adapters.ifc_read.flaws import Flaws
 from satAOI_adapters.ifc_read.meshes import DEFLECTION_MM, GROWTH_MM, Mesh
 from satAOI_adapters.ifc_read.model import body_items, handle_of, openings_of
 from satAOI_adapters.ifc_read.placement import (
@@ -152,12 +153,18 @@ class BodyReader:
         model: The open model.
         units: Its units.
         origin_mm: What is subtracted from the model's x and y, in whole millimetres.
+        flaws: What is known to be wrong with it.
     """
 
     def __init__(
-        self, model: ifcopenshell.file, units: Units, origin_mm: tuple[float, float]
+        self,
+        model: ifcopenshell.file,
+        units: Units,
+        origin_mm: tuple[float, float],
+        flaws: Flaws,
     ) -> None:
         self._units = units
+        self._flaws = flaws
         self._origin_mm = np.array((*origin_mm, 0.0))
         self._log = ifcopenshell_wrapper.logger()
         self._log.output_format(self._log.FMT_INMEMORY)
@@ -214,6 +221,9 @@ class BodyReader:
         items = body_items(product)
         if not items:
             raise NoBodyError("it has no body")
+        flaw = self._flaws.in_geometry(product)
+        if flaw:
+            raise NoBodyError(flaw)
         openings = list(openings_of(product))
         try:
             matrix = self.matrix(product)

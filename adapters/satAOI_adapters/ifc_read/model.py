@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -131,18 +131,23 @@ GUESSED: Final = ("mm", "m", "ft")
 
 
 def storeys_of(
-    model: ifcopenshell.file, mm: float, broken: Mapping[int, str]
+    model: ifcopenshell.file, mm: float, flaw_in: Callable[[entity_instance], str]
 ) -> tuple[list[Storey], list[Finding]]:
     """The storeys, lowest first, and what was odd about their heights.
 
     The height of a storey's placement counts; the attribute Elevation is informative only, and
     used where no storey is placed at a height of its own.
 
+    Args:
+        model: The model.
+        mm: Millimetres in its unit of length.
+        flaw_in: Says what is broken in a product, or an empty string.
+
     Raises:
         UnreadableError: If the placement of a storey cannot be resolved.
     """
     entities = sorted(model.by_type("IfcBuildingStorey"), key=handle_of)
-    placed_mm = [_placed_mm(storey, mm, broken) for storey in entities]
+    placed_mm = [_placed_mm(storey, mm, flaw_in) for storey in entities]
     stated_mm = [None if s.Elevation is None else s.Elevation * mm for s in entities]
     findings: list[Finding] = []
     if _all_alike(placed_mm) and not _all_alike(stated_mm):
@@ -194,10 +199,12 @@ def printable(name: str) -> str:
     return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in name)
 
 
-def _placed_mm(storey: entity_instance, mm: float, broken: Mapping[int, str]) -> float | None:
+def _placed_mm(
+    storey: entity_instance, mm: float, flaw_in: Callable[[entity_instance], str]
+) -> float | None:
     if storey.ObjectPlacement is None:
         return None
-    why = flaw_of(storey, broken)
+    why = flaw_in(storey)
     try:
         height_mm = float(world_matrix(storey.ObjectPlacement, mm)[2, 3])
     except PlacementError as error:
@@ -210,25 +217,6 @@ def _placed_mm(storey: entity_instance, mm: float, broken: Mapping[int, str]) ->
             handle=handle_of(storey),
         )
     return height_mm
-
-
-def flaw_of(product: entity_instance, broken: Mapping[int, str]) -> str:
-    """What is broken in a product's placement or geometry, or an empty string.
-
-    Args:
-        product: The product.
-        broken: Ids of entities with what is broken about them.
-    """
-    roots = (product.ObjectPlacement, product.Representation)
-    for root, name in zip(roots, ("IfcObjectPlacement", "IfcProductRepresentation"), strict=True):
-        if root is not None and not root.is_a(name):
-            return f"it has an {root.is_a()} for an {name}"
-    for root in roots if broken else ():
-        if root is not None:
-            for part in product.file.traverse(root):
-                if part.id() in broken:
-                    return broken[part.id()]
-    return ""
 
 
 def _all_alike(heights_mm: list[float | None]) -> bool:

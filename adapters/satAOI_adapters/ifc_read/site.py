@@ -13,6 +13,7 @@ from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.ifc_read.bodies import MALFORMED, Body, BodyReader, Extent, NoBodyError
 from satAOI_adapters.ifc_read.classes import Choice, blocks
+from satAOI_adapters.ifc_read.flaws import Flaws
 from satAOI_adapters.ifc_read.floor import Top, tops_of
 from satAOI_adapters.ifc_read.model import body_items, candidates, handle_of, printable
 from satAOI_adapters.ifc_read.placement import world_matrix
@@ -109,7 +110,7 @@ class Site:
         model: ifcopenshell.file,
         units: Units,
         choice: Choice,
-        unfit: Callable[[entity_instance], str],
+        flaws: Flaws,
         begin: Begin,
     ) -> "Site":
         """The products of a model.
@@ -118,21 +119,24 @@ class Site:
             model: The open model.
             units: Its units.
             choice: The user's classes.
-            unfit: Says why a product must not be read, or an empty string.
+            flaws: What is known to be wrong with it.
             begin: Called before an element is read.
         """
         notes = Notes()
         products = []
         for product in candidates(model, choice):
-            why = unfit(product)
-            if not why:
+            flaw = flaws.in_product(product)
+            if not flaw:
                 products.append(product)
             elif blocks(product, choice):
-                notes.fail(product, why)
+                notes.fail(product, flaw)
         _note_repeated(products, notes)
         origin_mm = _origin_mm(products, units)
-        reader = BodyReader(model, units, origin_mm)
-        extents = {product.id(): reader.extent(product) for product in products}
+        reader = BodyReader(model, units, origin_mm, flaws)
+        extents: dict[int, Extent | None] = {}
+        for product in products:
+            begin(product)
+            extents[product.id()] = reader.extent(product)
         return cls(model, units, choice, tuple(products), origin_mm, reader, extents, notes, begin)
 
     def is_near(self, product: entity_instance, low_mm: float, high_mm: float) -> bool:

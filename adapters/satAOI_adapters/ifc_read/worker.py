@@ -14,11 +14,11 @@ from typing import Final, TextIO
 import ifcopenshell
 from ifcopenshell import entity_instance
 
-from satAOI_adapters.ifc_read.classes import Choice, chosen_classes
+from satAOI_adapters.ifc_read.classes import chosen_classes
+from satAOI_adapters.ifc_read.flaws import Flaws
 from satAOI_adapters.ifc_read.model import (
     Storey,
     chosen_storey,
-    flaw_of,
     handle_of,
     open_model,
     storeys_of,
@@ -56,8 +56,7 @@ class Worker:
         self._request = request
         self._out = out
         self._n_begun = 0
-        self._n_products = 1
-        self._broken: dict[int, str] = {}
+        self._n_steps = 1
 
     def run(self) -> None:
         """Answer the request; errors of the program's own are an answer too."""
@@ -78,10 +77,11 @@ class Worker:
     def _answer(self) -> Record:
         request, options = self._request, self._request.options
         model, dangling = open_model(Path(request.path))
-        self._broken = dict.fromkeys(dangling, "it refers to something that the file lacks")
-        self._broken |= dict.fromkeys(request.bad_ids, "it holds a number that is none")
+        broken = dict.fromkeys(dangling, "it refers to something that the file lacks")
+        broken |= dict.fromkeys(request.bad_ids, "it holds a number that is none")
+        flaws = Flaws.of(model, broken, request.skip)
         units, unit = units_of(model, options.units)
-        storeys, findings = storeys_of(model, units.mm, self._broken)
+        storeys, findings = storeys_of(model, units.mm, flaws.in_product)
         described = _model_record(model, units, unit, storeys, findings)
         if request.only_inspect:
             return Inspected(model=described)
@@ -92,25 +92,15 @@ class Worker:
         storey = None if by_height else chosen_storey(storeys, options.storey)
         if storey is not None and options.storey is None and len(storeys) > 1:
             described.findings.append(FindingRecord.of(_only_used(storey)))
-        return self._read(model, units, choice, storey, described)
+        # each element is begun twice: for its box and for its body
+        self._n_steps = 2 * max(1, len(model.by_type("IfcElement")))
+        site = Site.of(model, units, choice, flaws, self._begin)
+        return self._read(site, storey, described)
 
-    def _read(
-        self,
-        model: ifcopenshell.file,
-        units: Units,
-        choice: Choice,
-        storey: Storey | None,
-        described: ModelRecord,
-    ) -> Read:
+    def _read(self, site: Site, storey: Storey | None, described: ModelRecord) -> Read:
         options = self._request.options
-        self._n_products = max(1, len(model.by_type("IfcElement")))
-        site = Site.of(model, units, choice, self._unfit, self._begin)
-        read = survey(
-            site,
-            storey,
-            asked_mm=None if options.floor_z is None else options.floor_z * units.mm,
-            band_mm=options.band_mm,
-        )
+        asked_mm = None if options.floor_z is None else options.floor_z * site.units.mm
+        read = survey(site, storey, asked_mm=asked_mm, band_mm=options.band_mm)
         return Read(
             model=described,
             storey="" if storey is None else storey.handle,
@@ -122,19 +112,13 @@ class Worker:
             findings=[FindingRecord.of(finding) for finding in read.findings],
         )
 
-    def _unfit(self, product: entity_instance) -> str:
-        """Why a product must not be read, or an empty string."""
-        if handle_of(product) in self._request.skip:
-            return "its geometry ended the process that reads it"
-        return flaw_of(product, self._broken)
-
     def _begin(self, product: entity_instance) -> None:
         self._n_begun += 1
         self._say(
             Begun(
                 handle=handle_of(product),
                 layer=product.is_a(),
-                share=min(1.0, self._n_begun / self._n_products),
+                share=min(1.0, self._n_begun / self._n_steps),
             )
         )
 
