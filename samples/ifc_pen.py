@@ -109,6 +109,9 @@ class Model:
         for number, root in enumerate(self.file.by_type("IfcRoot")):
             name = f"{number} {root.is_a()} {root.Name}"
             root.GlobalId = ifcopenshell.guid.compress(uuid.uuid5(NAMESPACE, name).hex)
+        # ifcopenshell keeps what a storey holds in a set, whose order changes with the addresses
+        for rel in self.file.by_type("IfcRelContainedInSpatialStructure"):
+            rel.RelatedElements = sorted(rel.RelatedElements, key=lambda element: element.id())
         for history in self.file.by_type("IfcOwnerHistory"):
             history.CreationDate = history.LastModifiedDate = WRITTEN_S
         header = self.file.header.file_name
