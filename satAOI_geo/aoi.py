@@ -275,11 +275,13 @@ def _owners(exteriors: list[Loop], holes: list[Loop]) -> IntArray:
     The smallest that is larger than the hole and contains a point of it: loops may touch but do
     not cross, so of those larger than the hole each contains all of it or nothing.
     """
+    owners = np.zeros(len(holes), dtype=np.int64)
+    if len(exteriors) == 1:
+        return owners
     sagitta_mm = 0.01
     tree = shapely.STRtree(
         [Polygon(hole.points_mm(sagitta_mm)).representative_point() for hole in holes]
     )
-    owners = np.zeros(len(holes), dtype=np.int64)
     hole_areas_mm2 = np.array([-hole.area_mm2() for hole in holes])
     for index, exterior in enumerate(exteriors):
         inside = tree.query(Polygon(exterior.points_mm(sagitta_mm)), predicate="contains")

@@ -6,7 +6,7 @@ from satAOI_geo.aoi import Aoi, area
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import FloorPlan
 from satAOI_geo.progress import Progress, Stopwatch
-from satAOI_geo.reasons import Patch, Reason, fitting_nodes, unreached
+from satAOI_geo.reasons import Patch, Reason, fitting_areas, unreached
 from satAOI_geo.report import Report, report_of
 from satAOI_geo.robot import PROTOTYPE, Robot
 from satAOI_geo.search import DEFAULTS, Search, Settings, search
@@ -97,14 +97,9 @@ def area_of_interest(
         all_zones = tuple(zones(found.pose, lattice, disc_mm))
         enough = tuple(set_downs(found.pose, found.free, lattice, disc_mm))
     with watch.stage("reasons"):
-        disc_fits, arm_fits = fitting_nodes(found.engine, robot, lattice)
-        wider = {
-            Reason.ARM: disc_fits,
-            Reason.VEHICLE: arm_fits,
-            Reason.ZONE: found.free,
-            Reason.PATH: nodes["disc"],
-        }
-        patches = unreached(found.plan, robot, lattice, areas[settings.connectivity], wider)
+        wider = fitting_areas(found.engine, robot, lattice, found.free)
+        wider[Reason.PATH] = areas["disc"]
+        patches = unreached(found.plan, lattice, areas[settings.connectivity], wider)
     report = report_of(
         found,
         n_nodes={rule: int(reached.sum()) for rule, reached in nodes.items()},

@@ -170,7 +170,8 @@ class PoseComponents:
         begin, end, _ = rows.indices(self.lattice.n_rows)
         words = self.lattice.no_nodes()[begin:end]
         paint(words, self.runs, self.runs_of(label), begin)
-        return self.lattice.unpacked(words)[:, columns]
+        # in one piece: a kernel is compiled anew for arrays that lie scattered
+        return np.ascontiguousarray(self.lattice.unpacked(words)[:, columns])
 
 
 def links_of(runs: Runs, move: Move) -> npt.NDArray[np.int32]:

@@ -30,6 +30,10 @@ SAGITTA_MM: Final = 0.01
 """How far the polygons of patches may leave the arcs they share with the area of interest."""
 
 
+APART_MM: Final = 0.05
+"""By how much outlines that run along each other are set apart before they are overlaid. Lines a
+rounding apart cross hundreds of times; what divides one reason from another may move by as much."""
+
 NARROW_CELLS: Final = 2
 """Between the disc and a wall the lattice leaves strips of up to a cell, askew to it 1.4 cells."""
 
@@ -78,29 +82,35 @@ class Patch:
         return float(self.region.area)
 
 
-def fitting_nodes(engine: Engine, robot: Robot, lattice: Lattice) -> tuple[BoolArray, BoolArray]:
-    """Nodes at which the disc alone fits, and at which disc and arm fit in some direction."""
-    disc = ~engine.blocked(robot.disc())
+def fitting_areas(
+    engine: Engine, robot: Robot, lattice: Lattice, free: BoolArray
+) -> dict[Reason, Aoi]:
+    """What the disc would cover if only it, only it and the arm, or any pose had to fit.
+
+    Each area holds what is left over for the reason it stands at; `free` are the nodes at which
+    some pose is free, shape (n_rows, n_columns).
+    """
     capsules = (~engine.blocked(robot.capsule(arm)) for arm in lattice.directions())
-    return lattice.unpacked(disc), lattice.unpacked(reduce(np.bitwise_or, capsules))
+    sets = [
+        lattice.unpacked(~engine.blocked(robot.disc())),
+        lattice.unpacked(reduce(np.bitwise_or, capsules)),
+        free,
+    ]
+    areas = run_threads(lambda k: area(sets[k], lattice, robot.disc_radius_mm), len(sets))
+    return dict(zip((Reason.ARM, Reason.VEHICLE, Reason.ZONE), areas, strict=True))
 
 
 def unreached(
-    plan: FloorPlan,
-    robot: Robot,
-    lattice: Lattice,
-    aoi: Aoi,
-    wider: dict[Reason, BoolArray],
+    plan: FloorPlan, lattice: Lattice, aoi: Aoi, wider: dict[Reason, Aoi]
 ) -> tuple[Patch, ...]:
     """The patches of free floor that the area of interest leaves over, largest first.
 
     Args:
         plan: The floor and its obstacles.
-        robot: The robot.
         lattice: Nodes and directions.
         aoi: The area of interest.
-        wider: For each reason but `disc` the nodes, shape (n_rows, n_columns), whose discs cover
-            what is left over for that reason and all that comes after it in `Reason`.
+        wider: For each reason but `disc` the area that holds what is left over for that reason
+            and for all that come after it in `Reason`.
 
     Returns:
         Patches whose areas and the area of interest add up to the free floor. Strips narrower
@@ -108,29 +118,26 @@ def unreached(
         than a cell are gathered in one patch at the end.
     """
     rest = as_region(plan.free_region().difference(_region(aoi)))
-    sets = list(wider.values())
-    areas = run_threads(lambda k: area(sets[k], lattice, robot.disc_radius_mm), len(sets))
-    covered = {reason: _region(one) for reason, one in zip(wider, areas, strict=True)}
+    covered = {
+        reason: as_region(_region(wider[reason]).buffer(-APART_MM * order))
+        for order, reason in enumerate(Reason)
+        if reason in wider
+    }
     parts = polygons_in([rest])
-
-    def divided(number: int) -> tuple[list[tuple[Reason, Polygon]], Region]:
-        """The pieces of a part with their reasons, and what is too narrow to be a piece."""
-        broad = _opened(parts[number], NARROW_CELLS * lattice.step_mm)
-        pieces = [
-            piece for one in polygons_in([broad]) for piece in _split(one, covered, lattice.step_mm)
-        ]
-        return pieces, as_region(parts[number].difference(broad))
-
-    answers = run_threads(divided, len(parts))
-    pieces = [piece for of_a_part, _ in answers for piece in of_a_part]
+    width_mm = NARROW_CELLS * lattice.step_mm
+    broad = [_opened(part, width_mm) for part in parts]
+    strips = [part.difference(region) for part, region in zip(parts, broad, strict=True)]
+    pieces = [
+        piece for part in polygons_in(broad) for piece in _split(part, covered, lattice.step_mm)
+    ]
     blockers = _Blockers(plan)
     crumb_mm2 = lattice.step_mm**2
     patches = [blockers.patch(piece, reason) for reason, piece in pieces if piece.area >= crumb_mm2]
     patches.sort(key=lambda patch: (-patch.area_mm2, patch.label_mm))
     crumbs = [piece for _, piece in pieces if piece.area < crumb_mm2]
-    strips = as_region(shapely.union_all([*(narrow for _, narrow in answers), *crumbs]))
-    if strips.area > 0:
-        patches.append(blockers.patch(strips, Reason.DISC, narrow=True))
+    narrow = as_region(shapely.union_all([*strips, *crumbs]))
+    if narrow.area > 0:
+        patches.append(blockers.patch(narrow, Reason.DISC, narrow=True))
     return tuple(patches)
 
 
@@ -161,7 +168,7 @@ def _split(
         for reason, region in by_reason.items()
         if reason is not most
         for piece in polygons_in([region])
-        if not piece.buffer(-step_mm / 2).is_empty
+        if piece.area >= step_mm**2 and not piece.buffer(-step_mm / 2).is_empty
     ]
     yield from others
     left = part.difference(shapely.union_all([piece for _, piece in others])) if others else part
@@ -209,4 +216,5 @@ def _clipped(region: Region, part: Polygon) -> Region:
 def _opened(region: Region, width_mm: float) -> Region:
     """What is left of a region without its parts narrower than a width."""
     shrunk = region.buffer(-width_mm / 2, join_style="mitre")
-    return as_region(shrunk.buffer(width_mm / 2, join_style="mitre").intersection(region))
+    grown = shrunk.buffer(width_mm / 2 + APART_MM, join_style="mitre")
+    return as_region(grown.intersection(region))

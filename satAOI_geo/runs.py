@@ -173,7 +173,10 @@ def _links(
                 a += 1
             while end[b] < ix:
                 b += 1
-            found[n] = a, b, ix
+            # one by one: assigning a tuple takes three seconds longer to compile
+            found[n, 0] = a
+            found[n, 1] = b
+            found[n, 2] = ix
             n += 1
             # one allowed move links the two runs: the next that matters lies beyond either's end
             ix = _next_bit(allowed[iy], min(end[a], end[b]) + 1)

@@ -12,7 +12,6 @@ import scipy.ndimage
 
 from satAOI_geo.aoi import Aoi, area
 from satAOI_geo.discs import covered_cells
-from satAOI_geo.freespace import run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.reach import PoseComponents, State
@@ -79,17 +78,15 @@ def largest(components: Components, labels: Iterable[int], lattice: Lattice, dis
 
 def zones(components: PoseComponents, lattice: Lattice, disc_mm: float) -> list[Zone]:
     """All components of at least `ZONE_MM2`, the largest raster area first."""
+    found = []
     bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
-    labels = np.flatnonzero(bounds_mm2 >= ZONE_MM2).tolist()
-
-    def zone(number: int) -> Zone:
-        label = labels[number]
+    for label in np.flatnonzero(bounds_mm2 >= ZONE_MM2).tolist():
         rows, columns = _window(components.boxes[label], lattice, disc_mm)
         nodes = components.nodes(label, rows, columns)
         aoi = area(nodes, lattice.window(rows, columns), disc_mm)
-        return Zone(label, int(nodes.sum()), aoi, set_down(components, label))
-
-    found = [one for one in run_threads(zone, len(labels)) if one.aoi.area_mm2 >= ZONE_MM2]
+        if aoi.area_mm2 >= ZONE_MM2:
+            state = set_down(components, label)
+            found.append(Zone(label, int(np.count_nonzero(nodes)), aoi, state))
     return sorted(found, key=lambda zone: (-zone.aoi.raster_area_mm2, zone.label))
 
 
