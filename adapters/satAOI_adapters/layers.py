@@ -5,7 +5,6 @@ the same form goes before it, or takes its place with `replace = true`.
 """
 
 import re
-import tomllib
 import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,12 +12,15 @@ from enum import StrEnum
 from fnmatch import fnmatchcase
 from functools import cache
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict
 
-from satAOI_geo.errors import InputError
+from satAOI_adapters.settings_read import read_settings
 from satAOI_geo.plan import Kind
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 BUILT_IN: Final = Path(__file__).with_name("layers.toml")
 """The table that comes with the program."""
@@ -166,30 +168,14 @@ def _built_in() -> LayerTable:
 
 
 def _read(path: Path) -> LayersFile:
-    try:
-        with path.open("rb") as stream:
-            keys = tomllib.load(stream)
-    except OSError as error:
-        raise InputError(f"layer file '{path}': {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"layer file '{path}' is not TOML: {error}") from error
-    try:
-        return LayersFile.model_validate(keys)
-    except ValidationError as error:
-        raise InputError(f"layer file '{path}': {_first_fault(error)}") from error
+    return read_settings(path, LayersFile, what="layer file", complaint=_complaint)
 
 
-def _first_fault(error: ValidationError) -> str:
-    """One key at fault and what is wrong with it, in one line."""
-    fault = error.errors(include_url=False)[0]
-    # pydantic marks a faulty key of a table with a last step '[key]'
-    steps = [str(step) for step in fault["loc"] if step != "[key]"]
-    key = ".".join(steps)
+def _complaint(key: str, fault: "ErrorDetails") -> str:
+    """What is wrong with one key of a layer file, and what to write there."""
     if fault["loc"][-1] == "[key]":
         return f"unknown kind '{key}'; known are {', '.join(Meaning)}"
-    if fault["type"] == "extra_forbidden":
-        return f"unknown key '{key}'; known are {', '.join(LayersFile.model_fields)}"
-    if steps[0] in {"layers", "blocks"}:
+    if fault["loc"][0] in {"layers", "blocks"}:
         return f"'{key}' is {fault['input']!r}; give a list of patterns, like [\"A-WALL*\"]"
     return f"'{key}' is {fault['input']!r}; give true or false"
 

@@ -10,15 +10,18 @@ swing_min_deg = -90.0
 swing_max_deg = 90.0
 """
 
-import json
 import math
-import tomllib
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
+from satAOI_adapters.settings_read import read_settings, toml_string
 from satAOI_geo.errors import InputError, RobotError
 from satAOI_geo.robot import ROBOTS, Robot
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 
 class RobotFile(BaseModel):
@@ -73,30 +76,15 @@ def read(path: Path) -> Robot:
         InputError: If the file cannot be read, is not TOML, or lacks or misspells a key.
         RobotError: If its measures contradict each other.
     """
+    file = read_settings(path, RobotFile, what="robot file", complaint=_complaint)
     try:
-        with path.open("rb") as file:
-            keys = tomllib.load(file)
-    except OSError as error:
-        raise InputError(f"robot file '{path}': {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"robot file '{path}' is not TOML: {error}") from error
-    try:
-        return RobotFile.model_validate(keys).robot(unnamed=path.stem)
-    except ValidationError as error:
-        raise InputError(f"robot file '{path}': {first_fault(error)}") from error
+        return file.robot(unnamed=path.stem)
     except RobotError as error:
         raise RobotError(f"robot file '{path}': {error}", measure=error.measure) from error
 
 
-def first_fault(error: ValidationError) -> str:
-    """One key at fault and what is wrong with it, in one line."""
-    faults = error.errors(include_url=False)
-    # a misspelt key is also a missing one; the misspelling says more
-    fault = min(faults, key=lambda fault: fault["type"] != "extra_forbidden")
-    key = ".".join(str(step) for step in fault["loc"])
-    known = ", ".join(RobotFile.model_fields)
-    if fault["type"] == "extra_forbidden":
-        return f"unknown key '{key}'; known are {known}"
+def _complaint(key: str, fault: "ErrorDetails") -> str:
+    """What is wrong with one key of a robot's file."""
     if fault["type"] == "missing":
         return f"key '{key}' is missing; `satAOI-geo robots magicbim` prints a complete file"
     return f"key '{key}' is {fault['input']!r}: {fault['msg']}"
@@ -108,8 +96,7 @@ def toml_of(robot: Robot) -> str:
     swing_min_deg = round(math.degrees(robot.swing_min_rad), 9)
     swing_max_deg = round(math.degrees(robot.swing_max_rad), 9)
     return (
-        # a JSON string is a TOML string
-        f"name = {json.dumps(robot.name, ensure_ascii=False)}\n"
+        f"name = {toml_string(robot.name)}\n"
         f"vehicle_length_mm = {robot.vehicle_length_mm!r}\n"
         f"vehicle_width_mm = {robot.vehicle_width_mm!r}\n"
         f"pivot_offset_mm = {robot.pivot_offset_mm!r}  # arm pivot to vehicle's centre\n"
