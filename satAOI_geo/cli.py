@@ -38,6 +38,7 @@ from satAOI_geo.options import (
     Outputs,
     Question,
     Reading,
+    StartAt,
     taking,
 )
 
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from satAOI_geo.plan import FloorPlan
     from satAOI_geo.route import Route
     from satAOI_geo.search import Settings
+    from satAOI_geo.start import StartMark
 
 DONE: Final = 0
 FINDINGS: Final = 1
@@ -242,20 +244,28 @@ def answer(
 
     compiled = kernel_cache.prepare()
     from satAOI_geo.pipeline import area_of_interest
-    from satAOI_geo.start import StartMark
 
     # what is cheap to refuse comes first
     robot = robot_from(options["robot"])
     settings = settings_of(options, exact_outline=exact_outline)
     plan = read(path, options)
-    mark = None
-    if options["start"] is not None:
-        x_mm, y_mm = plan.frame.to_local_mm(options["start"]).tolist()
-        mark = StartMark((x_mm, y_mm))
+    mark = None if options["start"] is None else mark_of(options["start"], plan)
     if not (compiled or quiet):
         say_note("first run of this version: compiling takes some seconds, once")
     with progress(quiet=quiet) as told:
         return area_of_interest(plan, robot, settings, start=mark, progress=told)
+
+
+def mark_of(start: StartAt, plan: "FloorPlan") -> "StartMark":
+    """A start as the option gives it, in the plan's frame."""
+    from satAOI_geo.start import StartMark
+
+    frame = plan.frame
+    x_mm, y_mm = frame.to_local_mm(start.place).tolist()
+    if start.angles_deg is None:
+        return StartMark((x_mm, y_mm))
+    a1_rad, a2_rad = map(math.radians, start.angles_deg)
+    return StartMark((x_mm, y_mm), angles_rad=(a1_rad - frame.turn_rad, a2_rad))
 
 
 def settings_of(question: Question, *, exact_outline: bool) -> "Settings":
@@ -282,7 +292,9 @@ def read(path: Path, options: PlanOptions) -> "FloorPlan":
     """Read a plan as the options say."""
     from satAOI_adapters import read_plan
 
-    return read_plan(path, *choices(path, options, start=options["start"]))
+    start = options["start"]
+    place = None if start is None else start.place
+    return read_plan(path, *choices(path, options, start=place))
 
 
 def choices(path: Path, options: Reading, *, start: tuple[float, float] | None = None) -> "Choices":

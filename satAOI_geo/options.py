@@ -4,9 +4,10 @@ Options that belong together form a group; a command names the groups it takes a
 values as keywords, typed by the group's `TypedDict`.
 """
 
+import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Final, Literal, TypeAlias, TypedDict, TypeVar
+from typing import Any, Final, Literal, NamedTuple, TypeAlias, TypedDict, TypeVar
 
 import rich_click as click
 
@@ -30,6 +31,13 @@ def taking(*groups: Group) -> Callable[[CommandT], CommandT]:
     return decorate
 
 
+class StartAt(NamedTuple):
+    """A start: place in drawing units, a1 and a2 of the pose in degrees or None for any pose."""
+
+    place: tuple[float, float]
+    angles_deg: tuple[float, float] | None = None
+
+
 def point(
     context: click.Context, parameter: click.Parameter, text: str | None
 ) -> tuple[float, float] | None:
@@ -37,11 +45,31 @@ def point(
     if text is None:
         return None
     try:
-        x, y = (float(number) for number in text.split(","))
+        x, y = _numbers(text)
     except ValueError as error:
         message = f"'{text}' is not two numbers with a comma, as in 3200,1500.5"
         raise click.BadParameter(message, ctx=context, param=parameter) from error
     return x, y
+
+
+def start_at(
+    context: click.Context, parameter: click.Parameter, text: str | None
+) -> StartAt | None:
+    """A start written `X,Y` or `X,Y,A1,A2`."""
+    if text is None:
+        return None
+    try:
+        x, y, *angles_deg = _numbers(text)
+        if not angles_deg:
+            return StartAt((x, y))
+        a1_deg, a2_deg = angles_deg
+    except ValueError as error:
+        message = (
+            f"'{text}' is not two numbers with a comma, as in 3200,1500.5, nor four, as in "
+            "3200,1500.5,90,0"
+        )
+        raise click.BadParameter(message, ctx=context, param=parameter) from error
+    return StartAt((x, y), (a1_deg, a2_deg))
 
 
 def rectangle(
@@ -51,11 +79,19 @@ def rectangle(
     if text is None:
         return None
     try:
-        left, bottom, right, top = (float(number) for number in text.split(","))
+        left, bottom, right, top = _numbers(text)
     except ValueError as error:
         message = f"'{text}' is not four numbers with commas, as in 0,0,12000,9000"
         raise click.BadParameter(message, ctx=context, param=parameter) from error
     return left, bottom, right, top
+
+
+def _numbers(text: str) -> list[float]:
+    """Finite numbers written with commas between them; anything else is a ValueError."""
+    numbers = [float(number) for number in text.split(",")]
+    if not all(map(math.isfinite, numbers)):
+        raise ValueError(text)
+    return numbers
 
 
 def direction(context: click.Context, parameter: click.Parameter, text: str | None) -> float | None:
@@ -227,9 +263,9 @@ READING: Final[Group] = (
 
 
 class Question(TypedDict):
-    """What is asked about the plan; start in drawing units, align in degrees."""
+    """What is asked about the plan; align in degrees."""
 
-    start: tuple[float, float] | None
+    start: StartAt | None
     robot: str
     connectivity: Literal["pose", "disc"]
     clearance: float
@@ -242,10 +278,12 @@ class Question(TypedDict):
 QUESTION: Final[Group] = (
     click.option(
         "--start",
-        metavar=POINT,
-        callback=point,
+        metavar="X,Y[,A1,A2]",
+        callback=start_at,
         panel="The robot",
         help="Where the disc's centre is set down, in drawing units, e.g. --start 3200,1500.5. "
+        "A1 and A2 choose the pose, in degrees counter-clockwise: A1 from the drawing's x axis to "
+        "the arm, seen from the disc, A2 from the arm to the vehicle's heading, 0 when straight. "
         "Without it: the mark on layer SATAOI-START; without a mark, where the area is largest.",
     ),
     click.option(

@@ -76,7 +76,7 @@ def area_of_interest(
         progress: Called with the stage's name and the share of it that is done.
 
     Raises:
-        InputError: If a setting is out of range.
+        InputError: If a setting or the start's pose is out of range.
         LimitError: If the lattice would hold too many nodes.
         NothingFreeError: If the robot fits nowhere on the floor.
         StartBlockedError: If no pose is free at the start.

@@ -100,13 +100,15 @@ def search(
         watch: Times the stages.
 
     Raises:
-        InputError: If a setting is out of range.
+        InputError: If a setting or the start's pose is out of range.
         LimitError: If the lattice would hold too many nodes.
         NothingFreeError: If the robot fits nowhere on the floor.
         StartBlockedError: If no pose is free at the start.
     """
     turn_rad = wall_direction_rad(plan) if settings.align_rad is None else settings.align_rad
     mark = start if start is not None else StartMark.of(plan)
+    if mark is not None:
+        mark.check(robot)
     plan = plan.turned(turn_rad)
     lattice = Lattice.over(
         plan.floor.bounds, robot, step_mm=settings.step_mm, n_directions=settings.n_directions

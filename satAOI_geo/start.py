@@ -8,7 +8,7 @@ from typing import Literal, Optional
 import numpy as np
 
 from satAOI_geo.collision import Collider
-from satAOI_geo.errors import StartBlockedError
+from satAOI_geo.errors import InputError, StartBlockedError
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray, FloorPlan, Frame, Obstacle
 from satAOI_geo.reach import DiscComponents, PoseComponents, State
@@ -34,6 +34,24 @@ class StartMark:
     def of(cls, plan: FloorPlan) -> Optional["StartMark"]:
         """The mark in the plan's drawing, or None where it has none."""
         return None if plan.start_mm is None else cls(plan.start_mm, "drawing")
+
+    def check(self, robot: Robot) -> None:
+        """Refuse a pose that the robot does not have.
+
+        Raises:
+            InputError: If the vehicle is turned farther against the arm than the arm swings.
+        """
+        if self.angles_rad is None:
+            return
+        _, a2_rad = self.angles_rad
+        # the swing is -a2
+        least_rad, most_rad = -robot.swing_max_rad, -robot.swing_min_rad
+        if not least_rad <= a2_rad <= most_rad:
+            raise InputError(
+                f"the vehicle of robot '{robot.name}' turns against its arm from "
+                f"{math.degrees(least_rad):g}° to {math.degrees(most_rad):g}°; give a start within "
+                f"that rather than {math.degrees(a2_rad):g}°"
+            )
 
     def turned(self, turn_rad: float) -> "StartMark":
         """The same mark seen in axes turned by an angle."""

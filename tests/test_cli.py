@@ -163,6 +163,15 @@ def test_the_start_is_in_drawing_units(tmp_path: Path, capsys: pytest.CaptureFix
     assert start["xy_mm"] == pytest.approx([-395, 1205], abs=10)
 
 
+@pytest.mark.parametrize("align_deg", ["none", "30"])
+def test_a_start_with_angles_is_that_pose_in_the_drawings_axes(
+    align_deg: str, room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    start = figures(capsys, room, "--start", "1000,1000,75,-30", "--align", align_deg)["start"]
+    assert start["xy_mm"] == pytest.approx([1000, 1000], abs=10)
+    assert (start["a1_deg"], start["a2_deg"]) == (pytest.approx(75), pytest.approx(-30))
+
+
 def test_of_several_plans_the_one_that_is_named_is_read(
     room: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -226,6 +235,11 @@ def test_strict_tells_findings_by_its_exit_code(
     [
         (["--start", "1"], 2, "'1' is not two numbers with a comma"),
         (["--start", "1;2"], 2, "'1;2' is not two numbers with a comma"),
+        (["--start", "1,2,3"], 2, "nor four, as in 3200,1500.5,90,0"),
+        (["--start", "nan,0"], 2, "'nan,0' is not two numbers with a comma"),
+        (["--start", "1,2,0,inf"], 2, "'1,2,0,inf' is not two numbers"),
+        (["--start", "1000,1000,0,91"], 2, "from -90° to 90°; give a start within"),
+        (["--start", "-600,1000,180,0"], 4, "this pose is not free; the edge of the floor"),
         (["--step", "0"], 2, "0"),
         (["--align", "up"], 2, "'up' is neither an angle"),
         (["--step", "ten"], 2, "'ten' is not a valid float"),
