@@ -66,14 +66,10 @@ def file_bytes(document: Drawing) -> bytes:
     # the numbers of the input's own classes follow from their order, so that order is kept
     for key in sorted(set(classes) - loaded):
         classes[key] = classes.pop(key)
-    buffer = io.BytesIO()
-    text = io.TextIOWrapper(
-        buffer, encoding=document.output_encoding, errors="dxfreplace", newline="\n"
-    )
+    text = io.StringIO(newline="\n")
     with _fixed_meta_data():
         document.write(text)
-    text.flush()
-    return buffer.getvalue()
+    return text.getvalue().encode(document.output_encoding, errors="dxfreplace")
 
 
 def _opened(source: Source) -> Drawing:

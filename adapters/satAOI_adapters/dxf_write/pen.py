@@ -1,16 +1,19 @@
 """Shapes of the plan as entities of model space, in drawing units."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 from ezdxf.entities import DXFGraphic, Hatch
+from ezdxf.entities.lwpolyline import LWPolylinePoints
 from ezdxf.layouts import Modelspace
 from ezdxf.lldxf.const import (
     BOUNDARY_PATH_EXTERNAL,
     BOUNDARY_PATH_OUTERMOST,
 )
+from ezdxf.lldxf.types import DXFTag
 from shapely.geometry import LineString, Polygon
 
 from satAOI_geo.aoi import Loop, Outline
@@ -39,10 +42,38 @@ def begun_on_a_straight(vertices: FloatArray) -> FloatArray:
 def outline_of(polygon: Polygon) -> Outline:
     """A polygon as an outline of straight lines."""
     exterior, *holes = (
-        np.insert(np.array(ring.coords)[:-1, :2], 2, 0.0, axis=1)
+        Loop(_straight(np.array(ring.coords)[:-1, :2]))
         for ring in (polygon.exterior, *polygon.interiors)
     )
-    return Outline(Loop(exterior), tuple(map(Loop, holes)))
+    return Outline(exterior, tuple(holes))
+
+
+def _straight(points: FloatArray) -> FloatArray:
+    """Points, shape (n, 2), as vertices without bulges, shape (n, 3)."""
+    return np.column_stack((points, np.zeros(len(points))))
+
+
+class _Points(LWPolylinePoints):
+    """The points of a polyline, made and written faster than by the library's own means.
+
+    These would take most of the time of a drawing: they parse a point format for each vertex and
+    pack each into an array to take it apart again.
+    """
+
+    @classmethod
+    def from_vertices(cls, vertices: FloatArray) -> "_Points":
+        """Vertices with bulges, shape (n, 3), as points without a width."""
+        points = cls()
+        points.set(np.column_stack((vertices[:, :2], np.zeros((len(vertices), 2)), vertices[:, 2])))
+        return points
+
+    def dxftags(self) -> Iterator[DXFTag]:
+        """Group code and value in turn; a bulge of 0 need not be said."""
+        for x, y, _, _, bulge in self.values.tolist():
+            yield DXFTag(self.VERTEX_CODE, x)
+            yield DXFTag(self.VERTEX_CODE + 10, y)
+            if bulge:
+                yield DXFTag(self.BULGE_CODE, bulge)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,22 +112,16 @@ class Pen:
         points_mm = np.asarray(points_mm, dtype=np.float64)[:, :2]
         if len(points_mm) > 3 and np.array_equal(points_mm[0], points_mm[-1]):
             return self.ring(points_mm)
-        return self.space.add_lwpolyline(
-            self.frame.to_drawing(points_mm), dxfattribs=self._attributes()
-        )
+        return self._polyline(_straight(points_mm), close=False)
 
     def ring(self, points_mm: npt.ArrayLike) -> DXFGraphic:
         """A closed polyline of straight lines; the last point repeats the first, as in shapely."""
         points_mm = np.asarray(points_mm, dtype=np.float64)[:-1, :2]
-        return self.space.add_lwpolyline(
-            self.frame.to_drawing(points_mm), close=True, dxfattribs=self._attributes()
-        )
+        return self._polyline(_straight(points_mm), close=True)
 
     def loop(self, loop: Loop) -> DXFGraphic:
         """A closed polyline with true arcs."""
-        return self.space.add_lwpolyline(
-            self._with_bulges(loop), format="xyb", close=True, dxfattribs=self._attributes()
-        )
+        return self._polyline(loop.vertices, close=True)
 
     def fill(self, outline: Outline) -> Hatch:
         """A solid hatch of one connected part with its holes, bounded by true arcs."""
@@ -105,13 +130,20 @@ class Pen:
             (outline.exterior, BOUNDARY_PATH_EXTERNAL),
             *((hole, BOUNDARY_PATH_OUTERMOST) for hole in outline.holes),
         ):
-            vertices = begun_on_a_straight(self._with_bulges(loop))
-            hatch.paths.add_polyline_path(vertices, flags=flags)
+            vertices = begun_on_a_straight(self._in_drawing(loop.vertices))
+            # plain numbers, which the library takes one by one
+            hatch.paths.add_polyline_path(vertices.tolist(), flags=flags)
         return hatch
 
-    def _with_bulges(self, loop: Loop) -> FloatArray:
+    def _polyline(self, vertices: FloatArray, *, close: bool) -> DXFGraphic:
+        """A polyline of vertices with bulges, shape (n, 3), in millimetres."""
+        polyline = self.space.add_lwpolyline([], close=close, dxfattribs=self._attributes())
+        polyline.lwpoints = _Points.from_vertices(self._in_drawing(vertices))
+        return polyline
+
+    def _in_drawing(self, vertices: FloatArray) -> FloatArray:
         """Vertices in drawing units, shape (n, 3); a similarity leaves the bulges as they are."""
-        return np.column_stack((self.frame.to_drawing(loop.vertices[:, :2]), loop.vertices[:, 2]))
+        return np.column_stack((self.frame.to_drawing(vertices[:, :2]), vertices[:, 2]))
 
     def _attributes(self) -> dict[str, str | int]:
         return {"layer": self.layer, "color": self.colour}

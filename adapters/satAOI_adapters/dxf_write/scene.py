@@ -8,6 +8,7 @@ from ezdxf.entities import DXFGraphic
 from ezdxf.layouts import Modelspace
 from ezdxf.lldxf.const import MTEXT_MIDDLE_CENTER
 
+from satAOI_adapters.dxf_write.arcs import outline_with_arcs
 from satAOI_adapters.dxf_write.layers import (
     AOI,
     EDGE,
@@ -23,15 +24,12 @@ from satAOI_adapters.dxf_write.layers import (
     Style,
 )
 from satAOI_adapters.dxf_write.metadata import Facts, attach
-from satAOI_adapters.dxf_write.pen import Pen, outline_of
+from satAOI_adapters.dxf_write.pen import Pen
 from satAOI_geo.aoi import Outline
 from satAOI_geo.pipeline import Result
 from satAOI_geo.plan import polygons_in
 from satAOI_geo.reasons import Patch, Reason
 from satAOI_geo.units import MM2_PER_M2
-
-DRAWN_MM: Final = 0.1
-"""How far the drawn edge of a patch may be from the true one; the report has the exact area."""
 
 LABELLED_MM2: Final = 10_000.0
 """Patches below this have no label: it would read 0.00 m² or hardly more."""
@@ -83,8 +81,8 @@ def draw_unreached(space: Modelspace, result: Result, letter: float) -> list[DXF
             "blocker": patch.blocker.handle if patch.blocker else "",
         }
         style = UPPER if patch.reason is Reason.PATH else UNREACHED
-        polygons = polygons_in([patch.region.simplify(DRAWN_MM)])
-        hatches += [_filled(space, result, style, outline_of(p), facts) for p in polygons]
+        outlines = map(outline_with_arcs, polygons_in([patch.region]))
+        hatches += [_filled(space, result, style, outline, facts) for outline in outlines]
         if patch.area_mm2 >= LABELLED_MM2:
             _label(space, result, patch, letter)
     return hatches
