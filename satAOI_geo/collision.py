@@ -13,9 +13,11 @@ import shapely
 from shapely.geometry import LineString, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
+from satAOI_geo.engine import AtRest
 from satAOI_geo.lattice import Lattice, Words
 from satAOI_geo.plan import CONTACT_MM, Circle, FloorPlan, Obstacle, Shape, polygons_in
 from satAOI_geo.robot import Part, Pose, Robot, unit
+from satAOI_geo.sweep import stepped
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +100,16 @@ class Reference:
     def __init__(self, collider: Collider, lattice: Lattice) -> None:
         self._collider = collider
         self._lattice = lattice
+
+    def at_rest(self, part: Part) -> AtRest:
+        """The nodes at which the part touches something, and the steps between them."""
+        blocked = self.blocked(part)
+        barred = []
+        for rows_up, columns_right in ((0, 1), (1, 0)):
+            step_mm = np.array((columns_right, rows_up)) * self._lattice.step_mm
+            swept = self._lattice.unpacked(self.blocked(stepped(part, step_mm)) & ~blocked)
+            barred += [(rows_up, iy, ix) for iy, ix in np.argwhere(swept).tolist()]
+        return AtRest(blocked, np.array(barred, dtype=np.int64).reshape(-1, 3))
 
     def blocked(self, part: Part) -> Words:
         """Nodes at which the part touches something, and every bit beyond the last column."""

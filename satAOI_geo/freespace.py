@@ -4,23 +4,18 @@ import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
+from satAOI_geo.engine import Engine
 from satAOI_geo.lattice import WORD_BITS, Lattice, Words
-from satAOI_geo.plan import BoolArray
+from satAOI_geo.plan import BoolArray, IntArray
 from satAOI_geo.robot import Part, Robot
-from satAOI_geo.sweep import carried, stepped, turned
+from satAOI_geo.sweep import carried, turned
 
 Answer = TypeVar("Answer")
-
-
-class Engine(Protocol):
-    """Tells where a part of the robot touches something."""
-
-    def blocked(self, part: Part) -> Words:
-        """Nodes at which the part touches something, and every bit beyond the last column."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,10 +25,13 @@ class FreeSpace:
     Attributes:
         lattice: Nodes and directions.
         words: Shape (n_directions, n_swings, n_rows, n_words); a bit is set where the pose is free.
+        barred: barred[a1][swing] are the steps from a free node to a free neighbour that something
+            between the two bars, shape (n, 3), see `engine.AtRest`.
     """
 
     lattice: Lattice
     words: Words
+    barred: tuple[tuple[IntArray, ...], ...]
 
     def is_free(self, iy: int, ix: int, a1: int, swing: int) -> bool:
         """Whether one pose is free at a node."""
@@ -44,6 +42,16 @@ class FreeSpace:
         """Nodes at which some pose is free, shape (n_rows, n_columns)."""
         return self.lattice.unpacked(np.bitwise_or.reduce(self.words, axis=(0, 1)))
 
+    def steps(self, a1: int, swing: int, *, rows_up: int) -> Words:
+        """Nodes from which the disc may step up (rows_up 1) or right (0), the pose kept."""
+        free = self.words[a1, swing]
+        steps: Words = free & (_from_above(free) if rows_up else _from_right(free))
+        barred = self.barred[a1][swing]
+        iy, ix = barred[barred[:, 0] == rows_up, 1:].T
+        bits = np.uint64(1) << (ix % WORD_BITS).astype(np.uint64)
+        np.bitwise_and.at(steps, (iy, ix // WORD_BITS), ~bits)
+        return steps
+
     def n_states(self) -> int:
         """How many (node, pose) pairs are free."""
         return int(np.bitwise_count(self.words).sum())
@@ -51,23 +59,27 @@ class FreeSpace:
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """One kind of move, for all nodes: from a pose to a neighbouring pose.
+    """One kind of move, for all nodes: from a pose to a neighbouring pose at the same node.
 
     Attributes:
         a1: Direction number of the pose it starts from.
         swing: Swing number of the pose it starts from.
         to_a1: Direction number of the pose it ends at.
         to_swing: Swing number of the pose it ends at.
-        rows_up: 1 when it ends one row higher, else 0.
-        allowed: Nodes it may start from: both ends and all between them touch nothing.
+        unless_vehicle: Nodes at which it touches nothing but perhaps with the vehicle on its way.
+        sweep: Makes the part that the vehicle sweeps.
     """
 
     a1: int
     swing: int
     to_a1: int
     to_swing: int
-    rows_up: int
-    allowed: Words
+    unless_vehicle: Words
+    sweep: Callable[[], Part]
+
+    def allowed(self, engine: Engine) -> Words:
+        """Nodes at which it may be made: both ends and all between them touch nothing."""
+        return self.unless_vehicle & ~engine.blocked(self.sweep())
 
 
 def free_space(
@@ -82,34 +94,22 @@ def free_space(
     words = np.empty((lattice.n_directions, n_swings, lattice.n_rows, n_words), dtype=np.uint64)
     directions = lattice.directions()
 
-    def fill(a1: int) -> None:
-        arm = directions[a1]
-        capsule = engine.blocked(robot.capsule(arm))
+    def fill(a1: int) -> tuple[IntArray, ...]:
+        capsule = engine.at_rest(robot.capsule(directions[a1]))
+        barred = []
         for swing, turn in enumerate(lattice.swings):
             heading = directions[(a1 + turn) % lattice.n_directions]
-            vehicle = engine.blocked(robot.vehicle(arm, heading))
-            words[a1, swing] = ~(capsule | vehicle)
+            vehicle = engine.at_rest(robot.vehicle(directions[a1], heading))
+            words[a1, swing] = ~(capsule.blocked | vehicle.blocked)
+            barred.append(np.concatenate((capsule.barred, vehicle.barred)))
+        return tuple(barred)
 
-    run_threads(fill, lattice.n_directions, progress)
-    return FreeSpace(lattice, words)
-
-
-def steps_right(engine: Engine, robot: Robot, space: FreeSpace, a1: int) -> Iterator[Words]:
-    """For each swing: nodes from which the disc may step one node to the right, pose kept."""
-    lattice = space.lattice
-    step_mm = np.array((lattice.step_mm, 0.0))
-    directions = lattice.directions()
-    arm = directions[a1]
-    capsule = engine.blocked(stepped(robot.capsule(arm), step_mm))
-    for swing, turn in enumerate(lattice.swings):
-        heading = directions[(a1 + turn) % lattice.n_directions]
-        vehicle = engine.blocked(stepped(robot.vehicle(arm, heading), step_mm))
-        free = space.words[a1, swing]
-        yield ~(capsule | vehicle) & free & _from_right(free)
+    barred = run_threads(fill, lattice.n_directions, progress)
+    return FreeSpace(lattice, words, tuple(barred))
 
 
 def moves(engine: Engine, robot: Robot, space: FreeSpace, a1: int) -> Iterator[Move]:
-    """All moves from the poses of one direction but the steps to the right.
+    """All moves about a node from the poses of one direction.
 
     Each kind is listed once; the way back is the same move.
     """
@@ -117,39 +117,31 @@ def moves(engine: Engine, robot: Robot, space: FreeSpace, a1: int) -> Iterator[M
     directions = lattice.directions()
     n_directions, n_swings = lattice.n_directions, len(lattice.swings)
     turn_rad = 2 * np.pi / n_directions
-    step_mm = np.array((0.0, lattice.step_mm))
     arm, next_a1 = directions[a1], (a1 + 1) % n_directions
     pivot_mm = robot.arm_length_mm * arm
     disc_mm = np.zeros(2)
-    capsule = robot.capsule(arm)
-    capsule_up = engine.blocked(stepped(capsule, step_mm))
-    capsule_turned = engine.blocked(turned(capsule, disc_mm, turn_rad))
+    arm_turns = ~engine.blocked(turned(robot.capsule(arm), disc_mm, turn_rad))
 
     for swing, turn in enumerate(lattice.swings):
         free = space.words[a1, swing]
         vehicle = robot.vehicle(arm, directions[(a1 + turn) % n_directions])
 
-        up = ~(capsule_up | engine.blocked(stepped(vehicle, step_mm))) & free
-        up[:-1] &= free[1:]
-        up[-1] = 0
-        yield Move(a1, swing, a1, swing, 1, up)
-
-        about_disc = ~(capsule_turned | engine.blocked(turned(vehicle, disc_mm, turn_rad)))
-        about_disc &= free & space.words[next_a1, swing]
-        yield Move(a1, swing, next_a1, swing, 0, about_disc)
+        ends = free & space.words[next_a1, swing] & arm_turns
+        about_disc = partial(turned, vehicle, disc_mm, turn_rad)
+        yield Move(a1, swing, next_a1, swing, ends, about_disc)
 
         # a swing range of a full turn is a ring: its last swing is beside its first
         wider = _neighbour(swing + 1, n_swings, ring=n_swings == n_directions)
         if wider is not None:
-            about_pivot = ~engine.blocked(turned(vehicle, pivot_mm, turn_rad))
-            about_pivot &= free & space.words[a1, wider]
-            yield Move(a1, swing, a1, wider, 0, about_pivot)
+            ends = free & space.words[a1, wider]
+            about_pivot = partial(turned, vehicle, pivot_mm, turn_rad)
+            yield Move(a1, swing, a1, wider, ends, about_pivot)
 
         narrower = _neighbour(swing - 1, n_swings, ring=n_swings == n_directions)
         if narrower is not None:
-            orbit = ~(capsule_turned | engine.blocked(carried(vehicle, pivot_mm, turn_rad)))
-            orbit &= free & space.words[next_a1, narrower]
-            yield Move(a1, swing, next_a1, narrower, 0, orbit)
+            ends = free & space.words[next_a1, narrower] & arm_turns
+            orbit = partial(carried, vehicle, pivot_mm, turn_rad)
+            yield Move(a1, swing, next_a1, narrower, ends, orbit)
 
 
 def run_threads(
@@ -186,4 +178,11 @@ def _from_right(words: Words) -> Words:
     """Each node's bit becomes that of its right neighbour."""
     shifted = words >> np.uint64(1)
     shifted[:, :-1] |= words[:, 1:] << np.uint64(WORD_BITS - 1)
+    return shifted
+
+
+def _from_above(words: Words) -> Words:
+    """Each node's bit becomes that of its upper neighbour."""
+    shifted = np.zeros_like(words)
+    shifted[:-1] = words[1:]
     return shifted

@@ -20,6 +20,7 @@ import numpy as np
 from shapely.geometry import LineString
 
 from satAOI_geo.convex import convex_pieces
+from satAOI_geo.engine import AtRest
 from satAOI_geo.lattice import Lattice, Words
 from satAOI_geo.plan import (
     CONTACT_MM,
@@ -42,12 +43,14 @@ class Pieces:
             then leftmost corner. One corner is a circle, two are a segment.
         y: Shape (n,).
         first: Shape (m + 1,), where each piece starts in x and y.
+        top: Shape (m,), y of the highest corner of each piece.
         radius: Shape (m,), how far each piece reaches beyond its corners.
     """
 
     x: FloatArray
     y: FloatArray
     first: IntArray
+    top: FloatArray
     radius: FloatArray
 
     @classmethod
@@ -61,11 +64,12 @@ class Pieces:
                 corners.append(_in_lattice_units(piece_mm, lattice))
                 radii_mm.append(shape.radius_mm if isinstance(shape, Circle) else 0.0)
         x, y = np.concatenate(corners).T
-        first = np.cumsum([0, *(len(c) for c in corners)])
+        first = np.cumsum([0, *(len(piece) for piece in corners)])
         return cls(
             np.ascontiguousarray(x),
             np.ascontiguousarray(y),
             first.astype(np.int64),
+            np.maximum.reduceat(y, first[:-1]),
             np.array(radii_mm) / lattice.step_mm,
         )
 
@@ -90,13 +94,23 @@ class Intervals:
         margin_mm = 1.5 * robot.reach_mm + lattice.step_mm + self._keep_mm
         self._pieces = Pieces.of(plan, lattice, margin_mm)
 
+    def at_rest(self, part: Part) -> AtRest:
+        """The nodes at which the part touches something, and the steps between them."""
+        words = self._lattice.no_nodes()
+        return AtRest(words, self._block(words, part, watch=True).reshape(-1, 3))
+
     def blocked(self, part: Part) -> Words:
         """Nodes at which the part touches something, and every bit beyond the last column."""
+        words = self._lattice.no_nodes()
+        self._block(words, part, watch=False)
+        return words
+
+    def _block(self, words: Words, part: Part, *, watch: bool) -> IntArray:
+        """Set the bits of the nodes at which the part touches something; see the kernel."""
         lattice, pieces = self._lattice, self._pieces
-        words = lattice.no_nodes()
         # -K: a half turn keeps the sense of rotation
         mirrored = _from_lowest(-part.corners_mm / lattice.step_mm)
-        _block(
+        return _block(
             words,
             lattice.n_columns,
             np.ascontiguousarray(mirrored[:, 0]),
@@ -105,9 +119,10 @@ class Intervals:
             pieces.x,
             pieces.y,
             pieces.first,
+            pieces.top,
             pieces.radius,
+            watch,
         )
-        return words
 
 
 def _pieces(shape: Shape) -> list[FloatArray]:
@@ -141,12 +156,30 @@ def _block(
     x: FloatArray,
     y: FloatArray,
     first: IntArray,
+    top: FloatArray,
     radius: FloatArray,
-) -> None:
+    watch: bool,  # noqa: FBT001  kernels take no keywords
+) -> IntArray:
     """Set the bits of the lattice points in (piece ⊕ part) ⊕ disc(reach + radius), piece by piece.
 
     The part is already turned by 180°. Lowest corner + lowest corner is the lowest corner of the
     sum, and its other corners follow by taking the edges of both in the order of their direction.
+
+    Args:
+        words: Shape (n_rows, n_words).
+        n_columns: Columns of the lattice.
+        part_x: Corners of the part, from its lowest on.
+        part_y: The same.
+        reach: Radius of the part and distance to keep.
+        x: These and the following are those of `Pieces`.
+        y: The same.
+        first: The same.
+        top: The same.
+        radius: The same.
+        watch: Whether to look for steps that a piece bars between their ends.
+
+    Returns:
+        The barred steps, three numbers each, see `engine.AtRest`.
     """
     n_rows = words.shape[0]
     longest = 0
@@ -156,24 +189,104 @@ def _block(
     sum_y = np.empty(longest + part_x.size + 1)
     left = np.empty(n_rows)
     right = np.empty(n_rows)
+    barred = [0 for _ in range(0)]
+    part_top = part_y.max()
     for piece in range(radius.size):
         begin, end = first[piece], first[piece + 1]
+        r = reach + radius[piece]
+        lowest = math.ceil(y[begin] + part_y[0] - r)
+        highest = math.floor(top[piece] + part_top + r)
+        if lowest >= n_rows or highest < 0:
+            continue
         n_corners, n_rising = _minkowski_sum(
             x[begin:end], y[begin:end], part_x, part_y, sum_x, sum_y
         )
-        r = reach + radius[piece]
-        highest = sum_y[n_rising]
-        low = max(0, math.ceil(sum_y[0] - r))
-        high = min(n_rows - 1, math.floor(highest + r))
-        if low > high:
-            continue
+        low, high = max(0, lowest), min(n_rows - 1, highest)
         _right_flank(sum_x, sum_y, n_rising, r, low, high, right)
         _left_flank(sum_x, sum_y, n_rising, n_corners, r, low, high, left)
         for iy in range(low, high + 1):
-            begin_ix = max(0, math.ceil(left[iy]))
-            end_ix = min(n_columns - 1, math.floor(right[iy]))
+            begin_ix, end_ix = _columns(left[iy], right[iy], n_columns)
             if begin_ix <= end_ix:
                 set_bits(words[iy], begin_ix, end_ix)
+            elif watch and end_ix >= 0 and begin_ix < n_columns:
+                _append(barred, 0, iy, end_ix)
+        if watch:
+            corners = sum_x[:n_corners], sum_y[:n_corners]
+            _bar_steps_up(barred, left, right, lowest, highest, corners, r, n_columns)
+    return np.array(barred)
+
+
+@numba.njit(nogil=True, cache=True)
+def _columns(left: float, right: float, n_columns: int) -> tuple[int, int]:
+    """First and last column from left to right; the last comes before the first where none is."""
+    return max(0, math.ceil(left)), min(n_columns - 1, math.floor(right))
+
+
+@numba.njit(nogil=True, cache=True)
+def _bar_steps_up(
+    barred: list[int],
+    left: FloatArray,
+    right: FloatArray,
+    lowest: int,
+    highest: int,
+    corners: tuple[FloatArray, FloatArray],
+    r: float,
+    n_columns: int,
+) -> None:
+    """Append the steps up that a rounded polygon meets between their ends only.
+
+    From one row to the next the polygon, which is convex, spans from the lesser of its left ends
+    in the two to the greater of its right ends, or to its leftmost and rightmost point if it has
+    these between the two.
+
+    Args:
+        barred: Three numbers a step, see `engine.AtRest`.
+        left: Left end in the rows that the polygon meets.
+        right: Right end.
+        lowest: The first row that the polygon meets, on the lattice or not.
+        highest: The last one.
+        corners: x and y of the polygon's corners.
+        r: By how much it is rounded.
+        n_columns: Columns of the lattice.
+    """
+    x, y = corners
+    leftmost, rightmost = x.argmin(), x.argmax()
+    leftmost_iy, rightmost_iy = math.floor(y[leftmost]), math.floor(y[rightmost])
+    for iy in range(max(0, lowest - 1), min(left.size - 2, highest) + 1):
+        is_plain = lowest <= iy < highest and iy not in (leftmost_iy, rightmost_iy)
+        if is_plain and max(left[iy], left[iy + 1]) + 1 <= min(right[iy], right[iy + 1]):
+            # both rows hold a common node, and the polygon does not reach beyond them between
+            continue
+        least, greatest = math.inf, -math.inf
+        begin_ix, end_ix = n_columns, -1
+        next_begin_ix, next_end_ix = n_columns, -1
+        if iy >= lowest:
+            least, greatest = left[iy], right[iy]
+            begin_ix, end_ix = _columns(least, greatest, n_columns)
+        if iy < highest:
+            least, greatest = min(least, left[iy + 1]), max(greatest, right[iy + 1])
+            next_begin_ix, next_end_ix = _columns(left[iy + 1], right[iy + 1], n_columns)
+        if iy == leftmost_iy:
+            least = min(least, x[leftmost] - r)
+        if iy == rightmost_iy:
+            greatest = max(greatest, x[rightmost] + r)
+        ix, last_ix = _columns(least, greatest, n_columns)
+        while ix <= last_ix:
+            if begin_ix <= ix <= end_ix:
+                ix = end_ix
+            elif next_begin_ix <= ix <= next_end_ix:
+                ix = next_end_ix
+            else:
+                _append(barred, 1, iy, ix)
+            ix += 1
+
+
+@numba.njit(nogil=True, cache=True)
+def _append(barred: list[int], rows_up: int, iy: int, ix: int) -> None:
+    """Append a step."""
+    barred.append(rows_up)
+    barred.append(iy)
+    barred.append(ix)
 
 
 @numba.njit(nogil=True, cache=True)
@@ -225,7 +338,13 @@ def _minkowski_sum(
 
 @numba.njit(nogil=True, cache=True)
 def _right_flank(
-    x: FloatArray, y: FloatArray, n_rising: int, r: float, low: int, high: int, right: FloatArray
+    x: FloatArray,
+    y: FloatArray,
+    n_rising: int,
+    r: float,
+    low: int,
+    high: int,
+    right: FloatArray,
 ) -> None:
     """Greatest x of the rounded polygon in each row from low to high, going up its right side."""
     iy = low
@@ -271,23 +390,29 @@ def _left_flank(
 
 @numba.njit(nogil=True, cache=True)
 def _arc(
-    vx: float, vy: float, r: float, side: float, iy: int, last: float, flank: FloatArray
+    vx: float,
+    vy: float,
+    r: float,
+    side: float,
+    iy: int,
+    last: float,
+    flank: FloatArray,
 ) -> int:
     """Fill rows from iy up to `last` with the circle of radius r about (vx, vy); next row."""
-    while iy <= last:
-        rise = iy - vy
-        flank[iy] = vx + side * math.sqrt(max(0.0, r * r - rise * rise))
-        iy += 1
-    return iy
+    next_iy = max(iy, math.floor(last) + 1)
+    for row in range(iy, next_iy):
+        rise = row - vy
+        flank[row] = vx + side * math.sqrt(max(0.0, r * r - rise * rise))
+    return next_iy
 
 
 @numba.njit(nogil=True, cache=True)
 def _line(x0: float, y0: float, slope: float, iy: int, last: float, flank: FloatArray) -> int:
     """Fill rows from iy up to `last` with the line through (x0, y0); next row."""
-    while iy <= last:
-        flank[iy] = x0 + (iy - y0) * slope
-        iy += 1
-    return iy
+    next_iy = max(iy, math.floor(last) + 1)
+    for row in range(iy, next_iy):
+        flank[row] = x0 + (row - y0) * slope
+    return next_iy
 
 
 @numba.njit(nogil=True, cache=True)

@@ -18,11 +18,12 @@ import numpy as np
 import numpy.typing as npt
 import scipy.ndimage
 
-from satAOI_geo.freespace import Engine, FreeSpace, Move, moves, run_threads, steps_right
+from satAOI_geo.engine import Engine
+from satAOI_geo.freespace import FreeSpace, Move, moves, run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.robot import Robot
-from satAOI_geo.runs import Runs, SliceRuns, links, paint, roots, unite
+from satAOI_geo.runs import Meeting, Runs, SliceRuns, paint, roots, unite
 
 EVERYTHING: Final = slice(None)
 
@@ -96,29 +97,33 @@ class PoseComponents:
         progress: Callable[[float], None] | None = None,
     ) -> "PoseComponents":
         """Join all free states by all moves whose sweep is free."""
-        n_directions = space.lattice.n_directions
+        lattice = space.lattice
+        n_swings = len(lattice.swings)
 
         def gather(a1: int) -> list[SliceRuns]:
-            rights = steps_right(engine, robot, space, a1)
-            pairs = zip(space.words[a1], rights, strict=True)
-            return [SliceRuns.of(free, right) for free, right in pairs]
+            return [
+                SliceRuns.of(space.words[a1, swing], space.steps(a1, swing, rows_up=0))
+                for swing in range(n_swings)
+            ]
 
-        slices = run_threads(gather, n_directions, progress and (lambda done: progress(done / 4)))
-        runs = Runs.joined(slices)
-        parents = np.arange(runs.begin.size, dtype=np.int32)
-        one_at_a_time = Lock()
+        share = _thirds(progress)
+        runs = Runs.joined(run_threads(gather, lattice.n_directions, share[0]))
+        joined = _Joined(engine, runs)
 
-        def connect(a1: int) -> None:
-            for move in moves(engine, robot, space, a1):
-                pairs = links_of(runs, move)
-                with one_at_a_time:
-                    unite(parents, pairs)
+        def step_up(a1: int) -> None:
+            for swing in range(n_swings):
+                joined.by_steps_up(space, a1, swing)
 
-        run_threads(
-            connect, n_directions, progress and (lambda share: progress((1 + 3 * share) / 4))
-        )
-        _, labels = np.unique(roots(parents), return_inverse=True)
-        return cls._gathered(space.lattice, runs, labels.astype(np.int32))
+        def move(a1: int) -> None:
+            for each in moves(engine, robot, space, a1):
+                joined.by_move(each)
+
+        run_threads(step_up, lattice.n_directions, share[1])
+        run_threads(move, lattice.n_directions, share[2])
+        root = roots(joined.parents)
+        is_root = root == np.arange(root.size)
+        labels = (np.cumsum(is_root, dtype=np.int32) - 1)[root]
+        return cls._gathered(lattice, runs, labels)
 
     @classmethod
     def _gathered(
@@ -174,12 +179,38 @@ class PoseComponents:
         return np.ascontiguousarray(self.lattice.unpacked(words)[:, columns])
 
 
-def links_of(runs: Runs, move: Move) -> npt.NDArray[np.int32]:
-    """The pairs of runs that a move leads between, shape (n, 3); see `runs.links`."""
-    return links(
-        runs,
-        pose=(move.a1, move.swing),
-        to_pose=(move.to_a1, move.to_swing),
-        rows_up=move.rows_up,
-        allowed=move.allowed,
-    )
+class _Joined:
+    """Runs being joined into components, by several threads at once."""
+
+    def __init__(self, engine: Engine, runs: Runs) -> None:
+        self.parents = np.arange(runs.begin.size, dtype=np.int32)
+        self._engine = engine
+        self._runs = runs
+        self._one_at_a_time = Lock()
+
+    def by_steps_up(self, space: FreeSpace, a1: int, swing: int) -> None:
+        """Join the runs of a pose that steps from row to row lead between."""
+        allowed = space.steps(a1, swing, rows_up=1)
+        self._unite(Meeting.upwards(self._runs, (a1, swing)).links(allowed))
+
+    def by_move(self, move: Move) -> None:
+        """Join the runs of two poses that a move leads between.
+
+        What the vehicle sweeps is looked at only where that could still join two components.
+        """
+        meeting = Meeting.of(self._runs, (move.a1, move.swing), (move.to_a1, move.to_swing))
+        if meeting.are_apart(self.parents, move.unless_vehicle):
+            self._unite(meeting.links(move.allowed(self._engine)))
+
+    def _unite(self, pairs: npt.NDArray[np.int32]) -> None:
+        with self._one_at_a_time:
+            unite(self.parents, pairs)
+
+
+def _thirds(progress: Callable[[float], None] | None) -> list[Callable[[float], None] | None]:
+    """What tells a progress of three equal stages the share that each of them has done."""
+
+    def third(number: int) -> Callable[[float], None] | None:
+        return progress and (lambda done: progress((number + done) / 3))
+
+    return [third(number) for number in range(3)]

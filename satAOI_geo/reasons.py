@@ -21,7 +21,8 @@ import shapely
 from shapely.geometry import MultiPolygon, Point, Polygon
 
 from satAOI_geo.aoi import Aoi, area
-from satAOI_geo.freespace import Engine, run_threads
+from satAOI_geo.engine import Engine
+from satAOI_geo.freespace import run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray, FloorPlan, Obstacle, Region, as_region, polygons_in
 from satAOI_geo.robot import Robot

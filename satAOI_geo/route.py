@@ -18,8 +18,9 @@ from scipy.sparse.csgraph import breadth_first_order
 from satAOI_geo.errors import NoRouteError
 from satAOI_geo.freespace import moves, run_threads
 from satAOI_geo.lattice import Lattice
-from satAOI_geo.reach import State, links_of
+from satAOI_geo.reach import State
 from satAOI_geo.robot import Pose
+from satAOI_geo.runs import Meeting
 from satAOI_geo.search import Search
 
 
@@ -139,13 +140,15 @@ class RouteMap:
         inside = found.pose.labels == found.start.pose_label
 
         def gather(a1: int) -> npt.NDArray[np.int32]:
-            return np.concatenate(
-                [
-                    pairs[inside[pairs[:, 0]]]
-                    for move in moves(found.engine, found.robot, found.space, a1)
-                    for pairs in [links_of(found.pose.runs, move)]
-                ]
-            )
+            runs, space = found.pose.runs, found.space
+            pairs = [
+                Meeting.upwards(runs, (a1, swing)).links(space.steps(a1, swing, rows_up=1))
+                for swing in range(len(found.lattice.swings))
+            ]
+            for move in moves(found.engine, found.robot, space, a1):
+                ends = (move.a1, move.swing), (move.to_a1, move.to_swing)
+                pairs.append(Meeting.of(runs, *ends).links(move.allowed(found.engine)))
+            return np.concatenate([some[inside[some[:, 0]]] for some in pairs])
 
         pairs = np.concatenate(run_threads(gather, found.lattice.n_directions)).astype(np.int64)
         pairs[:, :2] = np.searchsorted(self._runs, pairs[:, :2])

@@ -77,26 +77,48 @@ class SliceRuns:
         return cls(first, begin, end)
 
 
-def links(
-    runs: Runs, *, pose: tuple[int, int], to_pose: tuple[int, int], rows_up: int, allowed: Words
-) -> Int32Array:
-    """The pairs of runs that a move leads between.
+@dataclass(frozen=True, slots=True)
+class Meeting:
+    """The runs of two rows of poses that a move could lead between, row by row.
 
-    Args:
-        runs: All runs.
-        pose: (a1, swing) the move starts from.
-        to_pose: (a1, swing) it ends at.
-        rows_up: 1 when it ends one row higher, else 0.
-        allowed: Nodes it may start from, shape (n_rows, n_words).
-
-    Returns:
-        Shape (n, 3): a run, the run it leads to, and the column of a node where it does.
+    Attributes:
+        first_a: Shape (n_rows + 1,), for each row where it starts the first of its runs.
+        first_b: The same for the row that it ends at.
+        end: Last column of all runs.
     """
-    first_a, first_b = runs.first[pose], runs.first[to_pose]
-    # two sorted rows of runs overlap in fewer pairs than there are runs in both
-    found = np.empty((first_a[-1] - first_a[0] + first_b[-1] - first_b[0], 3), dtype=np.int32)
-    n = _links(allowed, rows_up, first_a, first_b, runs.end, found)
-    return found[:n]
+
+    first_a: IntArray
+    first_b: IntArray
+    end: Int32Array
+
+    @classmethod
+    def of(cls, runs: Runs, pose: tuple[int, int], to_pose: tuple[int, int]) -> "Meeting":
+        """The runs of a pose, (a1, swing), and those of another at the same nodes."""
+        return cls(runs.first[pose], runs.first[to_pose], runs.end)
+
+    @classmethod
+    def upwards(cls, runs: Runs, pose: tuple[int, int]) -> "Meeting":
+        """The runs of a pose, (a1, swing), and those of the row above it; none above the last."""
+        first = runs.first[pose]
+        return cls(first, np.append(first[1:], first[-1]), runs.end)
+
+    def links(self, allowed: Words) -> Int32Array:
+        """The pairs of runs that a move leads between, given the nodes it may start from.
+
+        Returns:
+            Shape (n, 3): a run, the run it leads to, and the column of a node where it does.
+        """
+        first_a, first_b = self.first_a, self.first_b
+        # two sorted rows of runs overlap in fewer pairs than there are runs in both
+        found = np.empty((first_a[-1] - first_a[0] + first_b[-1] - first_b[0], 3), dtype=np.int32)
+        return found[: _links(allowed, first_a, first_b, self.end, found)]
+
+    def are_apart(self, parents: Int32Array, ends: Words) -> bool:
+        """Whether a move could join two components of the forest `parents`.
+
+        `ends` are the nodes at which both ends of the move are free.
+        """
+        return bool(_are_apart(parents, ends, self.first_a, self.first_b, self.end))
 
 
 def unite(parents: Int32Array, pairs: Int32Array) -> None:
@@ -156,17 +178,12 @@ def _fill_runs(
 
 @numba.njit(nogil=True, cache=True)
 def _links(
-    allowed: Words,
-    rows_up: int,
-    first_a: IntArray,
-    first_b: IntArray,
-    end: Int32Array,
-    found: Int32Array,
+    allowed: Words, first_a: IntArray, first_b: IntArray, end: Int32Array, found: Int32Array
 ) -> int:
     """Write every two runs that an allowed move leads between; how many there are."""
     n = 0
-    for iy in range(allowed.shape[0] - rows_up):
-        a, b = first_a[iy], first_b[iy + rows_up]
+    for iy in range(allowed.shape[0]):
+        a, b = first_a[iy], first_b[iy]
         ix = _next_bit(allowed[iy], 0)
         while ix >= 0:
             while end[a] < ix:
@@ -181,6 +198,37 @@ def _links(
             # one allowed move links the two runs: the next that matters lies beyond either's end
             ix = _next_bit(allowed[iy], min(end[a], end[b]) + 1)
     return n
+
+
+@numba.njit(nogil=True, cache=True)
+def _are_apart(
+    parents: Int32Array, ends: Words, first_a: IntArray, first_b: IntArray, end: Int32Array
+) -> bool:
+    """Whether two runs that meet at a node have different roots.
+
+    It reads the forest only, which others may be changing: a root that is out of date makes two
+    runs look apart that no longer are, never the other way round.
+    """
+    for iy in range(ends.shape[0]):
+        a, b = first_a[iy], first_b[iy]
+        ix = _next_bit(ends[iy], 0)
+        while ix >= 0:
+            while end[a] < ix:
+                a += 1
+            while end[b] < ix:
+                b += 1
+            if _found(parents, a) != _found(parents, b):
+                return True
+            ix = _next_bit(ends[iy], min(end[a], end[b]) + 1)
+    return False
+
+
+@numba.njit(nogil=True, cache=True)
+def _found(parents: Int32Array, run: int) -> int:
+    """The root of a run, nothing changed on the way."""
+    while parents[run] != run:
+        run = parents[run]
+    return run
 
 
 @numba.njit(nogil=True, cache=True)

@@ -6,8 +6,9 @@ from typing import Final, Literal, TypeAlias
 
 from satAOI_geo.align import wall_direction_rad
 from satAOI_geo.collision import Collider, Reference
+from satAOI_geo.engine import Engine
 from satAOI_geo.errors import InputError, NothingFreeError
-from satAOI_geo.freespace import Engine, FreeSpace, free_space
+from satAOI_geo.freespace import FreeSpace, free_space
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray, FloorPlan

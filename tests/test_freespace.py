@@ -223,6 +223,35 @@ def test_slow_engine_finds_the_same_free_space() -> None:
     assert np.array_equal(slow.words, setting.space(plan).words)
 
 
+@pytest.mark.parametrize("name", ["specks_smaller_than_a_cell", "slivers"])
+def test_steps_that_something_small_bars_are_those_of_the_slow_engine(name: str) -> None:
+    # a robot of parts narrower than a cell, among things smaller than a cell
+    robot = replace(
+        PROTOTYPE,
+        vehicle_length_mm=70.0,
+        vehicle_width_mm=20.0,
+        pivot_offset_mm=10.0,
+        arm_length_mm=130.0,
+        disc_radius_mm=30.0,
+    )
+    plan = drawn.HARD[name]
+    setting = Setting(robot, step_mm=170.0, n_directions=8)
+    space, lattice = setting.space(plan), setting.lattice(plan)
+    slow = free_space(Reference(setting.collider(plan), lattice), robot, lattice)
+    n_barred = 0
+    for a1, swing, rows_up in np.ndindex(lattice.n_directions, len(lattice.swings), 2):
+        steps = lattice.unpacked(space.steps(a1, swing, rows_up=rows_up))
+        assert np.array_equal(steps, lattice.unpacked(slow.steps(a1, swing, rows_up=rows_up)))
+        free = lattice.unpacked(space.words[a1, swing])
+        ahead = np.zeros_like(free)
+        if rows_up:
+            ahead[:-1] = free[1:]
+        else:
+            ahead[:, :-1] = free[:, 1:]
+        n_barred += np.count_nonzero(free & ahead & ~steps)
+    assert n_barred > 0
+
+
 def test_arm_without_length_leaves_the_disc_to_be_tested() -> None:
     # an arm as long as the disc's radius: the spine is a single point, 300 mm from the wall
     robot = replace(PROTOTYPE, vehicle_length_mm=50.0, vehicle_width_mm=50.0, arm_length_mm=350.0)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from satAOI_geo.lattice import Lattice, Words
 from satAOI_geo.plan import BoolArray
-from satAOI_geo.runs import Runs, SliceRuns, links, paint, roots, unite
+from satAOI_geo.runs import Meeting, Runs, SliceRuns, paint, roots, unite
 
 Stretch = tuple[int, int, int]
 """Row, first and last column."""
@@ -82,35 +82,51 @@ def test_a_state_is_in_the_run_that_covers_it(
                 assert (run >= n_first) == (swing == 1)
 
 
+TWO_SLICES = SHAPES.flatmap(lambda shape: st.tuples(slices(shape), slices(shape)))
+
+
 @pytest.mark.parametrize("rows_up", [0, 1])
-@given(
-    SHAPES.flatmap(lambda shape: st.tuples(slices(shape), slices(shape))),
-    st.integers(0, 2**32 - 1),
-    st.sampled_from([0.02, 0.5, 1.0]),
-)
+@given(TWO_SLICES, st.integers(0, 2**32 - 1), st.sampled_from([0.02, 0.5, 1.0]))
 def test_links_join_the_runs_that_single_moves_join(
     rows_up: int,
     drawn: tuple[tuple[BoolArray, BoolArray], tuple[BoolArray, BoolArray]],
     seed: int,
     share: float,
 ) -> None:
-    (free, _), (to_free, _) = drawn
     runs = runs_of(*drawn)
+    to_swing = 1 - rows_up
+    meeting = Meeting.upwards(runs, (0, 0)) if rows_up else Meeting.of(runs, (0, 0), (0, 1))
+    free, to_free = drawn[0][0], drawn[to_swing][0]
     allowed = free & (np.random.default_rng(seed).random(free.shape) < share)
     allowed[: free.shape[0] - rows_up] &= to_free[rows_up:]
     allowed[free.shape[0] - rows_up :] = False
-    found = links(
-        runs, pose=(0, 0), to_pose=(0, 1), rows_up=rows_up, allowed=bits(allowed)
-    ).tolist()
+    found = meeting.links(bits(allowed)).tolist()
 
     expected = {
-        (runs.holding(iy, ix)[0, 0], runs.holding(iy + rows_up, ix)[0, 1])
+        (runs.holding(iy, ix)[0, 0], runs.holding(iy + rows_up, ix)[0, to_swing])
         for iy, ix in np.argwhere(allowed).tolist()
     }
     assert {(one, other) for one, other, _ in found} == expected
     assert len(found) == len(expected)
     for one, _, ix in found:
         assert allowed[runs.row[one], ix]
+
+
+@given(TWO_SLICES, st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.5, 0.9, 1.0]))
+def test_runs_are_apart_as_long_as_some_link_would_join_two_components(
+    drawn: tuple[tuple[BoolArray, BoolArray], tuple[BoolArray, BoolArray]],
+    seed: int,
+    share: float,
+) -> None:
+    runs = runs_of(*drawn)
+    meeting = Meeting.of(runs, (0, 0), (0, 1))
+    ends = bits(drawn[0][0] & drawn[1][0])
+    links = meeting.links(ends)
+    parents = np.arange(runs.begin.size, dtype=np.int32)
+    unite(parents, links[np.random.default_rng(seed).random(len(links)) < share])
+    apart = meeting.are_apart(parents, ends)
+    root = roots(parents)
+    assert apart == any(root[a] != root[b] for a, b, _ in links.tolist())
 
 
 @given(st.integers(1, 60), st.lists(st.tuples(st.integers(0, 59), st.integers(0, 59)), max_size=80))
