@@ -24,6 +24,7 @@ from satAOI_geo.errors import (
 from satAOI_geo.options import (
     AT,
     EXACT_OUTLINE,
+    INSPECTION,
     JSON,
     ONLY_DXF,
     ONLY_IFC,
@@ -35,6 +36,7 @@ from satAOI_geo.options import (
     ROUTE_OUTPUT,
     STRICT,
     TO,
+    Drafts,
     Outputs,
     Question,
     Reading,
@@ -43,7 +45,7 @@ from satAOI_geo.options import (
 )
 
 if TYPE_CHECKING:
-    from satAOI_adapters import Choices
+    from satAOI_adapters import Choices, Inspection
     from satAOI_geo.pipeline import Result
     from satAOI_geo.plan import FloorPlan
     from satAOI_geo.route import Route
@@ -316,6 +318,8 @@ def choices(path: Path, options: Reading, *, start: tuple[float, float] | None =
             storey=options["storey"],
             floor_z=options["floor_z"],
             band_mm=BAND_MM if options["band"] is None else options["band"],
+            with_classes=options["with_classes"],
+            without_classes=options["without_classes"],
         )
         return Choices(ifc=ifc)
     from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM, ReadOptions
@@ -347,8 +351,8 @@ def refuse_options_of_other_formats(path: Path, options: Reading) -> None:
     given = [
         option
         for name, option in foreign.items()
-        # a flag that was not given is False; 0 is a value
-        if not (said[name] is None or said[name] is False)
+        # not given, a flag is False, a list empty, another command's option absent; 0 is a value
+        if not (said.get(name) is None or said[name] is False or said[name] == ())
     ]
     if given:
         format_name = "IFC" if is_ifc else "DXF"
@@ -448,25 +452,80 @@ def demo(context: click.Context, **outputs: Unpack[Outputs]) -> int:
     return code
 
 
-@commands.command()
-@taking(PLAN, READING, JSON)
-def inspect(*, plan: Path, json: bool, **options: Unpack[Reading]) -> int:
+class InspectOptions(Reading, Drafts):
+    """All that `inspect` can be asked."""
+
+
+@commands.command(epilog=EPILOG)
+@taking(PLAN, INSPECTION, READING, JSON)
+def inspect(*, plan: Path, json: bool, **options: Unpack[InspectOptions]) -> int:
     """Tell how a plan is read: unit, size, layers or storeys, and what is odd about it.
 
-    satAOI-geo inspect plan.dxf
-    """
-    from satAOI_adapters import inspect_plan, inspect_write
-    from satAOI_adapters.terminal import say_findings, write_table
+    satAOI-geo inspect plan.dxf --picture plan.png
 
-    inspection = inspect_plan(plan, *choices(plan, options))
+    A drawing that cannot be used as it is, since its unit is not known for example, is told of as
+    far as that goes.
+    """
+    from satAOI_adapters import inspect_plan
+    from satAOI_adapters.terminal import say_findings
+
+    refuse_drafts_early(plan, options)
+    with_plan = options["picture"] is not None
+    found = inspect_plan(plan, *choices(plan, options), with_plan=with_plan)
+    tell_figures(found, json=json)
+    if not json:
+        say_findings(found.findings)
+    write_drafts(plan, found, options)
+    if found.error is not None:
+        raise found.error
+    return DONE
+
+
+def refuse_drafts_early(plan: Path, options: InspectOptions) -> None:
+    """Refuse what could not be written, before any work is done for it.
+
+    Raises:
+        InputError: If a name has a suffix that is not its format's, is an input, is asked for
+            twice, or cannot be that of a file at all.
+    """
+    from satAOI_adapters import layers_writer_of, picture_writer_of
+
+    picture, layers = options["picture"], options["write_layers"]
+    if picture is not None:
+        picture_writer_of(picture)
+    if layers is not None:
+        layers_writer_of(layers)
+    refuse_targets(
+        [file for file in (picture, layers) if file is not None], [plan, options["layers"]]
+    )
+
+
+def write_drafts(plan: Path, found: "Inspection", options: InspectOptions) -> None:
+    """Write what was asked for, as far as there is something to show; each file whole or not."""
+    from satAOI_adapters import layers_writer_of, picture_writer_of
+    from satAOI_adapters.terminal import say_note
+
+    inputs = [file for file in (plan, options["layers"]) if file is not None]
+    picture, layers = options["picture"], options["write_layers"]
+    if layers is not None and found.layers is not None:
+        layers_writer_of(layers)(layers, found.layers, inputs)
+        say_note(f"wrote {layers}")
+    if picture is not None and (found.plan is not None or found.sketch is not None):
+        picture_writer_of(picture)(picture, found, inputs)
+        say_note(f"wrote {picture}")
+
+
+def tell_figures(found: "Inspection", *, json: bool) -> None:
+    """Print an inspection's figures as tables or as JSON."""
+    from satAOI_adapters import inspect_write
+    from satAOI_adapters.terminal import write_table
+
     if json:
-        click.echo(inspect_write.json_of(inspection), nl=False)
-        return DONE
-    for number, table in enumerate(inspect_write.tables_of(inspection)):
+        click.echo(inspect_write.json_of(found.figures), nl=False)
+        return
+    for number, table in enumerate(inspect_write.tables_of(found.figures)):
         click.echo("\n" * min(number, 1), nl=False)
         write_table(table, sys.stdout)
-    say_findings(inspection.findings)
-    return DONE
 
 
 @commands.command()

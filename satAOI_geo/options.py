@@ -161,9 +161,12 @@ class Reading(TypedDict):
     storey: str | None
     floor_z: float | None
     band: float | None
+    with_classes: tuple[str, ...]
+    without_classes: tuple[str, ...]
 
 
 ONLY_DXF: Final = {
+    "write_layers": "--write-layers",
     "layers": "--layers",
     "encoding": "--encoding",
     "include_hidden": "--include-hidden",
@@ -172,7 +175,13 @@ ONLY_DXF: Final = {
     "region": "--region",
     "close_gaps": "--close-gaps",
 }
-ONLY_IFC: Final = {"storey": "--storey", "floor_z": "--floor-z", "band": "--band"}
+ONLY_IFC: Final = {
+    "storey": "--storey",
+    "floor_z": "--floor-z",
+    "band": "--band",
+    "with_classes": "--with",
+    "without_classes": "--without",
+}
 
 READING: Final[Group] = (
     click.option(
@@ -258,6 +267,24 @@ READING: Final[Group] = (
         panel="The plan",
         help="IFC: what begins higher than this above the floor is out of the robot's way, "
         "e.g. --band 900",
+    ),
+    click.option(
+        "--with",
+        "with_classes",
+        metavar="CLASS",
+        multiple=True,
+        panel="The plan",
+        help="IFC: a class that blocks, with all classes under it, although by default doors, "
+        "furniture and surroundings do not, e.g. --with IfcFurniture. May be given several times.",
+    ),
+    click.option(
+        "--without",
+        "without_classes",
+        metavar="CLASS",
+        multiple=True,
+        panel="The plan",
+        help="IFC: a class that does not block, with all classes under it, e.g. --without "
+        "IfcRailing. May be given several times; of two classes the more special one counts.",
     ),
 )
 
@@ -368,6 +395,33 @@ STRICT: Final[Group] = (
 QUIET: Final[Group] = (click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors."),)
 
 JSON: Final[Group] = (click.option("--json", is_flag=True, help="Write JSON rather than tables."),)
+
+
+class Drafts(TypedDict):
+    """What an inspection writes."""
+
+    picture: Path | None
+    write_layers: Path | None
+
+
+INSPECTION: Final[Group] = (
+    click.option(
+        "--picture",
+        metavar="FILE.png|.svg",
+        type=FILE,
+        panel="Outputs",
+        help="Draw the plan as it was understood, coloured by kind, with numbered findings, "
+        "e.g. --picture plan.png",
+    ),
+    click.option(
+        "--write-layers",
+        metavar="FILE.toml",
+        type=FILE,
+        panel="Outputs",
+        help="DXF: write which layer was taken for what, to be edited and given with --layers, "
+        "e.g. --write-layers mine.toml",
+    ),
+)
 
 TO: Final[Group] = (
     click.option(

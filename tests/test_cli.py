@@ -14,6 +14,7 @@ import rich_click as click
 import satAOI_geo
 from satAOI_geo import pipeline
 from satAOI_geo.cli import commands, main
+from tests.ifc_models import Pen
 
 ROOT = Path(__file__).parents[1]
 ROOM_M2 = 16.0
@@ -140,6 +141,43 @@ def test_an_option_of_drawings_is_refused_for_a_model(
     assert "--region says nothing about a plan in IFC" in the_error(capsys)
 
 
+@pytest.fixture
+def furnished_model(tmp_path: Path) -> Path:
+    """A floor of 4 × 4 m with a cupboard of 1 m² and a column of 0.09 m²."""
+    pen = Pen()
+    cupboard = pen.product("IfcFurniture", pen.box((3000, 0, 0), (4000, 1000, 2000)))
+    column = pen.product("IfcColumn", pen.box((3700, 3700, 0), (4000, 4000, 3000)))
+    pen.contain(pen.storey(), pen.slab(4000, 4000), cupboard, column)
+    return pen.save(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("asked", "blocked_m2"),
+    [
+        ([], COLUMN_M2),
+        (["--with", "IfcFurniture"], 1 + COLUMN_M2),
+        (["--without", "IfcColumn"], 0),
+        (["--with", "IfcElement", "--without", "IfcColumn", "--without", "IfcSlab"], 1),
+    ],
+)
+def test_the_command_line_chooses_the_classes_that_block(
+    furnished_model: Path,
+    asked: list[str],
+    blocked_m2: float,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    report = figures(capsys, furnished_model, "--step", 100, *asked)
+    assert report["floor"]["obstacle_area_m2"] == pytest.approx(blocked_m2, abs=1e-9)
+
+
+@pytest.mark.parametrize("command", ["run", "inspect"])
+def test_a_class_that_does_not_exist_is_refused_in_a_line(
+    furnished_model: Path, command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([command, str(furnished_model), "--with", "IfcFurnitur"]) == 2
+    assert "give IfcFurniture" in the_error(capsys)
+
+
 def test_two_runs_write_the_same_report_but_for_the_time(
     room: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -247,6 +285,8 @@ def test_strict_tells_findings_by_its_exit_code(
         (["--clearance", "-1"], 2, "clearance"),
         (["--storey", "2"], 2, "--storey says nothing about a plan in DXF"),
         (["--floor-z", "0"], 2, "--floor-z says nothing about a plan in DXF"),
+        (["--with", "IfcDoor"], 2, "--with says nothing about a plan in DXF"),
+        (["--without", "IfcWall"], 2, "--without says nothing about a plan in DXF"),
         (["--region", "1,2,3"], 2, "'1,2,3' is not four numbers with commas"),
         (["--plan", "9"], 2, "there is no plan 9"),
         (["--units", "parsec"], 2, "'parsec' is not one of"),

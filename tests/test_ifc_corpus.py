@@ -77,7 +77,7 @@ def test_floors_and_clear_distances_are_those_that_others_measured(case: Case) -
 def test_exact_bodies_agree_with_the_kernels_meshes(model: str) -> None:
     opened, _ = open_model(MODELS / f"{model}.ifc")
     units, _ = units_of(opened, None)
-    site = Site.of(opened, units, Choice((), ()), Flaws({}), lambda _: None)
+    site = Site.of(opened, units, Choice(), Flaws({}), lambda _: None)
     view = View(1.0, 1200.0, outward=True)
     for product in site.products:
         if body_items(product) and site.is_near(product, view.low_mm, view.high_mm):

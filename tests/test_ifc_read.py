@@ -415,15 +415,56 @@ def test_doors_furniture_spaces_and_floorings_do_not_block(tmp_path: Path, pen: 
     assert only(plan_in(path, with_classes=("ifcdoor",))).layer == "IfcDoor"
 
 
-def test_classes_can_be_left_out(tmp_path: Path, pen: Pen) -> None:
-    with_storey(pen, pen.slab(6000.0, 4000.0), wall(pen))
-    assert not plan_in(pen.save(tmp_path), without_classes=("IfcBuildingElement",)).obstacles
+@pytest.mark.parametrize("asked", ["IfcFurniture", "IfcFurnishingElement", "ifcelement"])
+def test_a_class_that_is_asked_for_blocks_with_all_that_is_under_it(
+    tmp_path: Path, pen: Pen, asked: str
+) -> None:
+    chair = pen.product("IfcFurniture", pen.box((1000.0, 1000.0, 0.0), (2000.0, 2000.0, 1000.0)))
+    with_storey(pen, pen.slab(6000.0, 4000.0), chair)
+    assert only(plan_in(pen.save(tmp_path), with_classes=(asked,))).kind is Kind.EQUIPMENT
 
 
-def test_an_unknown_class_is_refused(tmp_path: Path, pen: Pen) -> None:
+@pytest.mark.parametrize("dropped", ["IfcColumn", "IfcBuildingElement", "IfcElement"])
+def test_a_class_that_is_left_out_does_not_block_nor_does_what_is_under_it(
+    tmp_path: Path, pen: Pen, dropped: str
+) -> None:
+    pillar = pen.product("IfcColumn", pen.box((1000.0, 1000.0, 0.0), (2000.0, 2000.0, 3000.0)))
+    with_storey(pen, pen.slab(6000.0, 4000.0), pillar)
+    assert not plan_in(pen.save(tmp_path), without_classes=(dropped,)).obstacles
+
+
+def test_of_classes_with_and_without_the_more_special_one_counts(tmp_path: Path, pen: Pen) -> None:
+    body = pen.box((1000.0, 1000.0, 0.0), (2000.0, 2000.0, 3000.0))
+    pillar, door = pen.product("IfcColumn", body), pen.product("IfcDoor", body)
+    with_storey(pen, pen.slab(6000.0, 4000.0), wall(pen), pillar, door)
+    path = pen.save(tmp_path)
+    walls_only = plan_in(path, with_classes=("IfcWall",), without_classes=("IfcElement",))
+    assert only(walls_only).layer == "IfcWall"
+    all_but = plan_in(path, with_classes=("IfcElement",), without_classes=("IfcDoor", "IfcWall"))
+    assert only(all_but).layer == "IfcColumn"
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ("IfcDor", "'IfcDor' is no class of products of IFC4; give IfcDoor"),
+        ("Column", "'Column' is no class of products of IFC4; give IfcColumn"),
+        ("IfcLengthMeasure", "is no class of products"),
+        ("", "give a name such as IfcDoor"),
+    ],
+)
+def test_an_unknown_class_is_refused_with_names_like_it(
+    tmp_path: Path, pen: Pen, asked: str, message: str
+) -> None:
     with_storey(pen, pen.slab(6000.0, 4000.0))
-    with pytest.raises(errors.InputError, match="'IfcDor' is no class of IFC4"):
-        plan_in(pen.save(tmp_path), with_classes=("IfcDor",))
+    with pytest.raises(errors.InputError, match=message):
+        plan_in(pen.save(tmp_path), without_classes=(asked,))
+
+
+def test_a_class_both_with_and_without_is_refused(tmp_path: Path, pen: Pen) -> None:
+    with_storey(pen, pen.slab(6000.0, 4000.0))
+    with pytest.raises(errors.InputError, match="IfcWall is given --with and --without"):
+        plan_in(pen.save(tmp_path), with_classes=("IfcWall",), without_classes=("ifcwall",))
 
 
 @pytest.mark.parametrize(

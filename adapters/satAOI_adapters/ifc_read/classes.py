@@ -1,6 +1,7 @@
 """Which IFC classes are in the robot's way, and what kind of obstacle each is."""
 
-from collections.abc import Iterator
+import difflib
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -64,39 +65,80 @@ MAX_DEPTH: Final = 50
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Classes that the user adds to those that block, and takes from them."""
+    """What the user says about classes.
 
-    added: tuple[str, ...]
-    dropped: tuple[str, ...]
+    Attributes:
+        rules: A class and whether it blocks; a class stands before those that it is under.
+    """
+
+    rules: tuple[tuple[str, bool], ...] = ()
+
+    def added(self) -> set[str]:
+        """The classes that block."""
+        return {name for name, is_in_the_way in self.rules if is_in_the_way}
+
+    def verdict(self, element: entity_instance) -> bool | None:
+        """Whether an element blocks, by the most special class that was named; None if none was."""
+        named = (is_in_the_way for name, is_in_the_way in self.rules if element.is_a(name))
+        return next(named, None)
 
 
 def chosen_classes(schema: str, added: tuple[str, ...], dropped: tuple[str, ...]) -> Choice:
     """The user's classes, spelled as the schema spells them.
 
+    Args:
+        schema: For example IFC4.
+        added: Classes that block, whatever the built-in rule.
+        dropped: Classes that do not block, whatever the built-in rule.
+
     Raises:
-        InputError: If the schema has no such class.
+        InputError: If the schema has no such class of products, or one is both.
     """
-    return Choice(
-        tuple(_declared(schema, name) for name in added),
-        tuple(_declared(schema, name) for name in dropped),
-    )
+    depths = _depths(schema)
+    blocking = {_spelled(name, depths, schema): True for name in added}
+    passing = {_spelled(name, depths, schema): False for name in dropped}
+    if twice := blocking.keys() & passing.keys():
+        raise InputError(f"{min(twice)} is given --with and --without; leave one of the two out")
+    rules = sorted((blocking | passing).items(), key=lambda rule: -depths[rule[0]])
+    return Choice(tuple(rules))
 
 
-def _declared(schema: str, name: str) -> str:
-    try:
-        return str(ifcopenshell_wrapper.schema_by_name(schema).declaration_by_name(name).name())
-    except RuntimeError:
-        raise InputError(
-            f"'{name}' is no class of {schema}; give a name such as IfcDoor or IfcColumn"
-        ) from None
+def _depths(schema: str) -> dict[str, int]:
+    """The schema's classes of products, and how many classes each is under."""
+    depths = {}
+    for entity in ifcopenshell_wrapper.schema_by_name(schema).entities():
+        lineage = [entity]
+        while (above := lineage[-1].supertype()) is not None:
+            lineage.append(above)
+        if any(one.name() == "IfcProduct" for one in lineage):
+            depths[entity.name()] = len(lineage)
+    return depths
+
+
+def _spelled(name: str, names: Collection[str], schema: str) -> str:
+    """The one of the names that this is, in whatever case.
+
+    Raises:
+        InputError: If it is none of them.
+    """
+    by_letters = {known.casefold(): known for known in names}
+    wanted = name.strip().casefold()
+    if wanted in by_letters:
+        return by_letters[wanted]
+    # people leave out the prefix
+    full = f"ifc{wanted.removeprefix('ifc')}"
+    near = difflib.get_close_matches(full, by_letters, n=3, cutoff=0.7)
+    instead = " or ".join(by_letters[letters] for letters in near) or "a name such as IfcDoor"
+    raise InputError(f"'{name}' is no class of products of {schema}; give {instead}")
 
 
 def blocks(element: entity_instance, choice: Choice) -> bool:
     """Whether an element stands in the way where it occupies the band."""
-    if any(element.is_a(name) for name in choice.dropped) or is_ours(element):
+    if is_ours(element):
         return False
-    if any(element.is_a(name) for name in choice.added):
-        return True
+    verdict = choice.verdict(element)
+    if verdict is not None:
+        return verdict
     if element.is_a("IfcCovering"):
         return element.PredefinedType not in FLOOR_COVERINGS
     return not any(element.is_a(name) for name in NEVER_BLOCK)

@@ -273,7 +273,7 @@ def _listed(storeys: list[Storey]) -> str:
 
 def candidates(model: ifcopenshell.file, choice: Choice) -> list[entity_instance]:
     """All products that could stand on a floor, by GlobalId."""
-    names = {"IfcElement", *choice.added}
+    names = {"IfcElement", *choice.added()}
     if model.schema != "IFC4X3":
         names.add("IfcProxy")
     found = {

@@ -16,7 +16,8 @@ class IfcOptions:
         floor_z: Height of the floor in the model's unit of length; overrides the storey's own.
         band_mm: Height above the floor up to which things are in the way.
         units: Key of `units.MM_PER_UNIT`; overrides the model's unit assignment.
-        with_classes: IFC classes that block although they do not by default.
+        with_classes: IFC classes that block although they do not by default; of two classes that
+            an element is of, here or in `without_classes`, the more special one counts.
         without_classes: IFC classes that do not block although they do by default.
         timeout_s: Longest time the geometry may take.
         memory_mb: Most memory the geometry may take; None for an allowance by the file's size.

@@ -81,13 +81,13 @@ class Worker:
         broken |= dict.fromkeys(request.bad_ids, "it holds a number that is none")
         flaws = Flaws.of(model, broken, request.skip)
         units, unit = units_of(model, options.units)
+        choice = chosen_classes(
+            model.schema_identifier, options.with_classes, options.without_classes
+        )
         storeys, findings = storeys_of(model, units.mm, flaws.in_product)
         described = _model_record(model, units, unit, storeys, findings)
         if request.only_inspect:
             return Inspected(model=described)
-        choice = chosen_classes(
-            model.schema_identifier, options.with_classes, options.without_classes
-        )
         by_height = options.floor_z is not None and options.storey is None
         storey = None if by_height else chosen_storey(storeys, options.storey)
         if storey is not None and options.storey is None and len(storeys) > 1:
