@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from satAOI_adapters import Choices, Inspection
     from satAOI_geo.pipeline import Result
     from satAOI_geo.plan import FloorPlan
+    from satAOI_geo.progress import Progress
     from satAOI_geo.route import Route
     from satAOI_geo.search import Settings
     from satAOI_geo.start import StartMark
@@ -250,7 +251,8 @@ def answer(
     # what is cheap to refuse comes first
     robot = robot_from(options["robot"])
     settings = settings_of(options, exact_outline=exact_outline)
-    plan = read(path, options)
+    with progress(quiet=quiet) as told:
+        plan = read(path, options, progress=told)
     mark = None if options["start"] is None else mark_of(options["start"], plan)
     if not (compiled or quiet):
         say_note("first run of this version: compiling takes some seconds, once")
@@ -290,13 +292,13 @@ def settings_of(question: Question, *, exact_outline: bool) -> "Settings":
     )
 
 
-def read(path: Path, options: PlanOptions) -> "FloorPlan":
+def read(path: Path, options: PlanOptions, *, progress: "Progress | None") -> "FloorPlan":
     """Read a plan as the options say."""
     from satAOI_adapters import read_plan
 
     start = options["start"]
     place = None if start is None else start.place
-    return read_plan(path, *choices(path, options, start=place))
+    return read_plan(path, *choices(path, options, start=place), progress=progress)
 
 
 def choices(path: Path, options: Reading, *, start: tuple[float, float] | None = None) -> "Choices":

@@ -5,6 +5,8 @@ import math
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import ezdxf
@@ -12,8 +14,10 @@ import pytest
 import rich_click as click
 
 import satAOI_geo
+from satAOI_adapters import terminal
 from satAOI_geo import pipeline
 from satAOI_geo.cli import commands, main
+from satAOI_geo.progress import Progress
 from tests.ifc_models import Pen
 
 ROOT = Path(__file__).parents[1]
@@ -176,6 +180,24 @@ def test_a_class_that_does_not_exist_is_refused_in_a_line(
 ) -> None:
     assert main([command, str(furnished_model), "--with", "IfcFurnitur"]) == 2
     assert "give IfcFurniture" in the_error(capsys)
+
+
+def test_a_terminal_sees_how_far_the_reading_of_a_model_is(
+    furnished_model: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[tuple[str, float]] = []
+
+    @contextmanager
+    def progress(*, quiet: bool) -> Iterator[Progress]:
+        assert not quiet
+        yield lambda stage, share: seen.append((stage, share))
+
+    monkeypatch.setattr(terminal, "progress", progress)
+    assert main([str(furnished_model), "--step", "100"]) == 0
+    shares = [share for stage, share in seen if stage == "reading"]
+    # slab and column are looked at twice each, the cupboard only once
+    assert shares == [0, *(pytest.approx(n / 6) for n in range(1, 6)), 1]
+    assert {stage for stage, _ in seen} > {"reading", "free space", "reach"}
 
 
 def test_two_runs_write_the_same_report_but_for_the_time(

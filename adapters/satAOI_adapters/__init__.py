@@ -6,34 +6,48 @@ A new format is one module and one line in `READERS`, `INSPECTORS`, `WRITERS` or
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Final, NamedTuple, Protocol, TypeAlias, TypeVar
 
-from satAOI_geo.errors import InputError
+from satAOI_geo.errors import InputError, SatAoiError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from satAOI_adapters.dxf_read import ReadOptions
     from satAOI_adapters.dxf_read.inspection import Inspection as DxfInspection
     from satAOI_adapters.ifc_read import IfcOptions
     from satAOI_adapters.ifc_read import Inspection as IfcInspection
+    from satAOI_adapters.inspected import Inspected
+    from satAOI_adapters.layers import LayerMap
     from satAOI_geo.pipeline import Result
     from satAOI_geo.plan import FloorPlan
+    from satAOI_geo.progress import Progress
     from satAOI_geo.route import Route
 
-    Inspection: TypeAlias = DxfInspection | IfcInspection
-    Reader: TypeAlias = Callable[[Path, "Choices"], FloorPlan]
-    Inspector: TypeAlias = Callable[[Path, "Choices"], Inspection]
+    Inspection: TypeAlias = Inspected[DxfInspection] | Inspected[IfcInspection]
+    Reader: TypeAlias = Callable[[Path, "Choices", Progress | None], FloorPlan]
     Writer: TypeAlias = Callable[[Path, Result], None]
+    LayersWriter: TypeAlias = Callable[[Path, LayerMap, Sequence[Path]], None]
+    PictureWriter: TypeAlias = Callable[[Path, Inspection, Sequence[Path]], None]
     RouteWriter: TypeAlias = Callable[[Path, Result, Route], None]
+
+    class Inspector(Protocol):
+        """A function that tells how a file is read."""
+
+        def __call__(self, path: Path, choices: Choices, *, with_plan: bool) -> Inspection: ...
+
 
 __all__ = [
     "INSPECTORS",
+    "LAYERS_WRITERS",
+    "PICTURE_WRITERS",
     "READERS",
     "ROUTE_WRITERS",
     "WRITERS",
     "Choices",
     "inspect_plan",
+    "layers_writer_of",
+    "picture_writer_of",
     "read_plan",
     "route_writer_of",
     "write_aoi",
@@ -50,7 +64,11 @@ class Choices(NamedTuple):
 
 
 def read_plan(
-    path: Path | str, dxf: ReadOptions | None = None, ifc: IfcOptions | None = None
+    path: Path | str,
+    dxf: ReadOptions | None = None,
+    ifc: IfcOptions | None = None,
+    *,
+    progress: Progress | None = None,
 ) -> FloorPlan:
     """Read a floor plan from a file of any known format.
 
@@ -58,6 +76,7 @@ def read_plan(
         path: The file; its suffix tells the format.
         dxf: How a DXF drawing is read, if it is one.
         ifc: How an IFC model is read, if it is one.
+        progress: Called with "reading" and the share of it that is done.
 
     Raises:
         InputError: If no reader knows the file's suffix, or an option is wrong.
@@ -65,15 +84,35 @@ def read_plan(
         LimitError: If it asks for more than the reader's limits allow.
     """
     path = Path(path)
-    return _by_suffix(READERS, path, "read")(path, Choices(dxf, ifc))
+    reader = _by_suffix(READERS, path, "read")
+    told = progress or (lambda _stage, _share: None)
+    told("reading", 0.0)
+    plan = reader(path, Choices(dxf, ifc), told)
+    told("reading", 1.0)
+    return plan
 
 
 def inspect_plan(
-    path: Path | str, dxf: ReadOptions | None = None, ifc: IfcOptions | None = None
+    path: Path | str,
+    dxf: ReadOptions | None = None,
+    ifc: IfcOptions | None = None,
+    *,
+    with_plan: bool = False,
 ) -> Inspection:
-    """Tell how a plan would be read; arguments and errors as for `read_plan`."""
+    """Tell how a plan is read; arguments and errors as for `read_plan`.
+
+    What keeps a file from being used that something can be told of is not raised, but a part of
+    the answer.
+
+    Args:
+        path: The file; its suffix tells the format.
+        dxf: How a DXF drawing is read, if it is one.
+        ifc: How an IFC model is read, if it is one.
+        with_plan: Whether the plan is wanted, too. A drawing's always comes along; a model's
+            takes the time that reading it does.
+    """
     path = Path(path)
-    return _by_suffix(INSPECTORS, path, "inspect")(path, Choices(dxf, ifc))
+    return _by_suffix(INSPECTORS, path, "inspect")(path, Choices(dxf, ifc), with_plan=with_plan)
 
 
 def write_aoi(path: Path | str, result: Result) -> None:
@@ -114,28 +153,67 @@ def route_writer_of(path: Path) -> RouteWriter:
     return _by_suffix(ROUTE_WRITERS, path, "write")
 
 
-def _read_dxf(path: Path, choices: Choices) -> FloorPlan:
+def layers_writer_of(path: Path) -> LayersWriter:
+    """The function that writes a drawing's layers, to be edited, to files of this name.
+
+    It takes the file, the layers, and files that must survive.
+
+    Raises:
+        InputError: If no writer knows the file's suffix.
+    """
+    return _by_suffix(LAYERS_WRITERS, path, "write")
+
+
+def picture_writer_of(path: Path) -> PictureWriter:
+    """The function that draws an inspection to files of this name.
+
+    It takes the file, what was inspected, and files that must survive.
+
+    Raises:
+        InputError: If no writer knows the file's suffix.
+    """
+    return _by_suffix(PICTURE_WRITERS, path, "write")
+
+
+def _read_dxf(
+    path: Path,
+    choices: Choices,
+    progress: Progress | None = None,  # noqa: ARG001 - there is little to wait for
+) -> FloorPlan:
     from satAOI_adapters import dxf_read
 
     return dxf_read.read(path, choices.dxf or dxf_read.ReadOptions())
 
 
-def _read_ifc(path: Path, choices: Choices) -> FloorPlan:
+def _read_ifc(path: Path, choices: Choices, progress: Progress | None = None) -> FloorPlan:
     from satAOI_adapters import ifc_read
 
-    return ifc_read.read(path, choices.ifc or ifc_read.IfcOptions())
+    return ifc_read.read(path, choices.ifc or ifc_read.IfcOptions(), progress)
 
 
-def _inspect_dxf(path: Path, choices: Choices) -> Inspection:
+def _inspect_dxf(
+    path: Path,
+    choices: Choices,
+    *,
+    with_plan: bool,  # noqa: ARG001 - it comes along anyway
+) -> Inspection:
     from satAOI_adapters.dxf_read import inspection, options
 
     return inspection.inspect(path, choices.dxf or options.ReadOptions())
 
 
-def _inspect_ifc(path: Path, choices: Choices) -> Inspection:
+def _inspect_ifc(path: Path, choices: Choices, *, with_plan: bool) -> Inspection:
     from satAOI_adapters import ifc_read
+    from satAOI_adapters.inspected import Inspected
 
-    return ifc_read.inspect(path, choices.ifc or ifc_read.IfcOptions())
+    figures = ifc_read.inspect(path, choices.ifc or ifc_read.IfcOptions())
+    if not with_plan:
+        return Inspected(figures, figures.findings)
+    try:
+        plan = _read_ifc(path, choices)
+    except SatAoiError as error:
+        return Inspected(figures, figures.findings, error=error)
+    return Inspected(figures, plan.findings, plan)
 
 
 def _write_dxf(path: Path, result: Result) -> None:
@@ -180,6 +258,24 @@ def _write_route_json(path: Path, result: Result, route: Route) -> None:
     route_write.write(path, result, route)
 
 
+def _write_layers(path: Path, layers: LayerMap, inputs: Sequence[Path]) -> None:
+    from satAOI_adapters import layers_write
+
+    layers_write.write(path, layers, drawing=inputs[0].name, never_over=inputs)
+
+
+def _picture_png(path: Path, inspection: Inspection, inputs: Sequence[Path]) -> None:
+    from satAOI_adapters import plan_picture
+
+    plan_picture.write_png(path, inspection, never_over=inputs)
+
+
+def _picture_svg(path: Path, inspection: Inspection, inputs: Sequence[Path]) -> None:
+    from satAOI_adapters import plan_picture
+
+    plan_picture.write_svg(path, inspection, never_over=inputs)
+
+
 READERS: Final[dict[str, Reader]] = {".dxf": _read_dxf, ".ifc": _read_ifc}
 """Suffix, in lower case, to the function that reads such a file."""
 
@@ -200,6 +296,12 @@ ROUTE_WRITERS: Final[dict[str, RouteWriter]] = {
     ".json": _write_route_json,
 }
 """Suffix, in lower case, to the function that writes a route to such a file."""
+
+LAYERS_WRITERS: Final[dict[str, LayersWriter]] = {".toml": _write_layers}
+"""Suffix, in lower case, to the function that writes a drawing's layers to such a file."""
+
+PICTURE_WRITERS: Final[dict[str, PictureWriter]] = {".png": _picture_png, ".svg": _picture_svg}
+"""Suffix, in lower case, to the function that draws an inspection to such a file."""
 
 HINTS: Final = {
     ".dwg": "; save the drawing as DXF (R2010 or newer) in the program it was made with",
