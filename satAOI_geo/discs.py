@@ -16,10 +16,8 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
-from scipy.spatial import cKDTree
 
 from satAOI_geo.plan import BoolArray, FloatArray, IntArray
-from satAOI_geo.runs import roots, unite
 
 TIE = 1e-12
 """Share of a squared radius within which a squared distance counts as equal to it: far more than
@@ -104,9 +102,11 @@ def boundary(reached: BoolArray, radius: float) -> Arcs:
 
 def _exposed(reached: BoolArray) -> BoolArray:
     """The reached nodes with a 4-neighbour that is not reached."""
-    around = np.pad(reached, 1)
-    inner = around[2:, 1:-1] & around[:-2, 1:-1] & around[1:-1, 2:] & around[1:-1, :-2]
-    return reached & ~inner
+    exposed = reached.copy()
+    beside = reached[2:, 1:-1] & reached[:-2, 1:-1] & reached[1:-1, 2:] & reached[1:-1, :-2]
+    # what lies beyond the lattice is not reached, so all reached nodes along its rim are exposed
+    exposed[1:-1, 1:-1] &= ~beside
+    return exposed
 
 
 def _sorted(chosen: BoolArray, side: int) -> tuple[IntArray, IntArray]:
@@ -152,12 +152,32 @@ def _linked(nodes: IntArray, begins: FloatArray, ends: FloatArray, spans_rad: Fl
 
 
 def _welded(ends: FloatArray) -> tuple[FloatArray, IntArray]:
-    """The distinct points among the ends of arcs, and the number of each end's point."""
-    pairs = cKDTree(ends, balanced_tree=False).query_pairs(WELD, output_type="ndarray")
-    parents = np.arange(len(ends), dtype=np.int32)
-    unite(parents, pairs.astype(np.int32))
-    representatives, labels = np.unique(roots(parents), return_inverse=True)
-    return ends[representatives], labels
+    """The distinct points among the ends of arcs, and the number of each end's point.
+
+    Ends in a chain of steps up to `WELD` in x make a column, those of a column in a chain of such
+    steps in y a point.
+    """
+    x, y = ends.T
+    nowhere = np.zeros(max(len(ends) - 1, 0), dtype=np.bool_)
+    columns = _chained(x, np.argsort(x), nowhere)
+    order = np.lexsort((y, columns))
+    points = _chained(y, order, np.diff(columns[order]) > 0)
+    representatives = np.empty(points.max(initial=-1) + 1, dtype=np.int64)
+    # of the ends that are one point the first in the order they came in stands for it
+    representatives[points[::-1]] = np.arange(len(ends))[::-1]
+    return ends[representatives], points
+
+
+def _chained(values: FloatArray, order: IntArray, apart: BoolArray) -> IntArray:
+    """Numbers of the chains of values up to `WELD` from one to the next in an order.
+
+    A chain ends, too, where two values in a row are apart for another reason, shape (n - 1,).
+    """
+    begins = np.zeros(values.size, dtype=np.bool_)
+    begins[1:] = (np.diff(values[order]) > WELD) | apart
+    numbers = np.empty(values.size, dtype=np.int64)
+    numbers[order] = np.cumsum(begins)
+    return numbers
 
 
 @numba.njit(nogil=True, cache=True)

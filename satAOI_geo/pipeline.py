@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 from satAOI_geo.aoi import Aoi, area
+from satAOI_geo.freespace import run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import FloorPlan
 from satAOI_geo.progress import Progress, Stopwatch
-from satAOI_geo.reasons import Patch, Reason, fitting_areas, unreached
+from satAOI_geo.reasons import Patch, Reason, fitting_nodes, unreached
 from satAOI_geo.report import Report, report_of
 from satAOI_geo.robot import PROTOTYPE, Robot
 from satAOI_geo.search import DEFAULTS, Search, Settings, search
@@ -89,26 +90,27 @@ def area_of_interest(
             "disc": found.disc.nodes(found.start.disc_label),
             "pose": found.pose.nodes(found.start.pose_label),
         }
+        fitting = fitting_nodes(found.engine, robot, lattice, found.free)
+        sets = [*nodes.values(), *fitting.values()]
         exact = settings.exact_outline
-        areas = {
-            rule: area(reached, lattice, disc_mm, exact=exact) for rule, reached in nodes.items()
-        }
-    with watch.stage("zones"):
-        all_zones = tuple(zones(found.pose, lattice, disc_mm))
-        enough = tuple(set_downs(found.pose, found.free, lattice, disc_mm))
-    with watch.stage("reasons"):
-        wider = fitting_areas(found.engine, robot, lattice, found.free)
+        covered = run_threads(lambda k: area(sets[k], lattice, disc_mm, exact=exact), len(sets))
+        areas = dict(zip(nodes, covered[: len(nodes)], strict=True))
+        wider = dict(zip(fitting, covered[len(nodes) :], strict=True))
         wider[Reason.PATH] = areas["disc"]
+    with watch.stage("zones"):
+        all_zones = zones(found.pose, lattice, disc_mm)
+        downs = set_downs(found.pose, found.free, lattice, disc_mm)
+    with watch.stage("reasons"):
         patches = unreached(found.plan, lattice, areas[settings.connectivity], wider)
     report = report_of(
         found,
         n_nodes={rule: int(reached.sum()) for rule, reached in nodes.items()},
         areas=areas,
         zones=all_zones,
-        set_downs=enough,
+        set_downs=downs,
         patches=patches,
         timing_s=watch.timing_s,
     )
     return Result(
-        found, areas[settings.connectivity], areas["disc"], all_zones, enough, patches, report
+        found, areas[settings.connectivity], areas["disc"], all_zones, downs, patches, report
     )

@@ -20,9 +20,8 @@ import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon, Point, Polygon
 
-from satAOI_geo.aoi import Aoi, area
+from satAOI_geo.aoi import Aoi
 from satAOI_geo.engine import Engine
-from satAOI_geo.freespace import run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray, FloorPlan, Obstacle, Region, as_region, polygons_in
 from satAOI_geo.robot import Robot
@@ -83,22 +82,20 @@ class Patch:
         return float(self.region.area)
 
 
-def fitting_areas(
+def fitting_nodes(
     engine: Engine, robot: Robot, lattice: Lattice, free: BoolArray
-) -> dict[Reason, Aoi]:
-    """What the disc would cover if only it, only it and the arm, or any pose had to fit.
+) -> dict[Reason, BoolArray]:
+    """Nodes at which the disc, the disc and the arm, or any pose touches nothing.
 
-    Each area holds what is left over for the reason it stands at; `free` are the nodes at which
-    some pose is free, shape (n_rows, n_columns).
+    What the disc covers from them holds what is left over for the reason each stands at. All have
+    the shape (n_rows, n_columns), as have `free`, the nodes at which some pose is free.
     """
     capsules = (~engine.blocked(robot.capsule(arm)) for arm in lattice.directions())
-    sets = [
-        lattice.unpacked(~engine.blocked(robot.disc())),
-        lattice.unpacked(reduce(np.bitwise_or, capsules)),
-        free,
-    ]
-    areas = run_threads(lambda k: area(sets[k], lattice, robot.disc_radius_mm), len(sets))
-    return dict(zip((Reason.ARM, Reason.VEHICLE, Reason.ZONE), areas, strict=True))
+    return {
+        Reason.ARM: lattice.unpacked(~engine.blocked(robot.disc())),
+        Reason.VEHICLE: lattice.unpacked(reduce(np.bitwise_or, capsules)),
+        Reason.ZONE: free,
+    }
 
 
 def unreached(

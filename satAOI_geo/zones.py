@@ -2,13 +2,13 @@
 
 import heapq
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final, Protocol
 
+import numba
 import numpy as np
 import numpy.typing as npt
-import scipy.ndimage
 
 from satAOI_geo.aoi import Aoi, area
 from satAOI_geo.discs import covered_cells
@@ -76,7 +76,7 @@ def largest(components: Components, labels: Iterable[int], lattice: Lattice, dis
     return best_label
 
 
-def zones(components: PoseComponents, lattice: Lattice, disc_mm: float) -> list[Zone]:
+def zones(components: PoseComponents, lattice: Lattice, disc_mm: float) -> tuple[Zone, ...]:
     """All components of at least `ZONE_MM2`, the largest raster area first."""
     found = []
     bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
@@ -87,17 +87,18 @@ def zones(components: PoseComponents, lattice: Lattice, disc_mm: float) -> list[
         if aoi.area_mm2 >= ZONE_MM2:
             state = set_down(components, label)
             found.append(Zone(label, int(np.count_nonzero(nodes)), aoi, state))
-    return sorted(found, key=lambda zone: (-zone.aoi.raster_area_mm2, zone.label))
+    return tuple(sorted(found, key=lambda zone: (-zone.aoi.raster_area_mm2, zone.label)))
 
 
 def set_downs(
     components: PoseComponents, free: BoolArray, lattice: Lattice, disc_mm: float
-) -> Iterator[SetDown]:
+) -> tuple[SetDown, ...]:
     """Set-downs whose areas together cover what any pose can trowel, the greatest gain first.
 
     Greedy: each covers the most cells not covered yet. Gains only shrink as more is covered, so a
     stale gain is an upper bound and need only be looked at again when it comes first.
     """
+    chosen = []
     todo = covered_cells(free, disc_mm / lattice.step_mm)
     bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
     queue = [(-bound, label, False) for label, bound in enumerate(bounds_mm2)]
@@ -114,20 +115,42 @@ def set_downs(
             continue
         if fresh and gain_mm2 == -best:
             todo[rows, columns] &= ~gained
-            yield SetDown(set_down(components, label), label, gain_mm2)
+            chosen.append(SetDown(set_down(components, label), label, gain_mm2))
         else:
             heapq.heappush(queue, (-gain_mm2, label, True))
+    return tuple(chosen)
 
 
 def set_down(components: PoseComponents, label: int) -> State:
     """The state deepest inside a component's nodes, arm as straight as possible."""
     rows, columns = (slice(int(a), int(b) + 1) for a, b in components.boxes[label].reshape(2, 2).T)
-    depth = scipy.ndimage.distance_transform_cdt(
-        np.pad(components.nodes(label, rows, columns), 1), "chessboard"
-    )
-    at = np.unravel_index(int(depth.argmax()), depth.shape)
-    iy, ix = int(at[0]) - 1 + rows.start, int(at[1]) - 1 + columns.start
-    return components.straightest(iy, ix, label)
+    iy, ix = _deepest(components.nodes(label, rows, columns))
+    return components.straightest(iy + rows.start, ix + columns.start, label)
+
+
+@numba.njit(nogil=True, cache=True)
+def _deepest(nodes: BoolArray) -> tuple[int, int]:
+    """The first of the nodes that are in the middle of the largest square of nodes.
+
+    The depth of a node is how many rings of nodes are around it, and one more. From the four
+    neighbours before it in the raster's order, and from the four after it, it is one more at most.
+    """
+    n_rows, n_columns = nodes.shape
+    # a rim of no nodes
+    depth = np.zeros((n_rows + 2, n_columns + 2), dtype=np.int32)
+    for iy in range(1, n_rows + 1):
+        for ix in range(1, n_columns + 1):
+            if nodes[iy - 1, ix - 1]:
+                above = min(depth[iy - 1, ix - 1], depth[iy - 1, ix], depth[iy - 1, ix + 1])
+                depth[iy, ix] = min(above, depth[iy, ix - 1]) + 1
+    best, best_iy, best_ix = 0, 0, 0
+    for iy in range(n_rows, 0, -1):
+        for ix in range(n_columns, 0, -1):
+            below = min(depth[iy + 1, ix - 1], depth[iy + 1, ix], depth[iy + 1, ix + 1])
+            depth[iy, ix] = min(depth[iy, ix], min(below, depth[iy, ix + 1]) + 1)
+            if depth[iy, ix] >= best:
+                best, best_iy, best_ix = depth[iy, ix], iy, ix
+    return best_iy - 1, best_ix - 1
 
 
 def _area_mm2(components: Components, label: int, lattice: Lattice, disc_mm: float) -> float:
