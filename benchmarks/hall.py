@@ -1,4 +1,4 @@
-"""Time the complex hall: `python benchmarks/hall.py [--runs N] [DRAWING]`.
+"""Time the complex hall: `python -m benchmarks.hall [--runs N] [DRAWING]`.
 
 Every figure is the median of several runs, after one run that compiles: seconds on the clock, and
 seconds of all cores together, which tell more on a machine that has other things to do. The table
@@ -9,17 +9,15 @@ import argparse
 import json
 import os
 import platform
-import statistics
 import subprocess
 import sys
 import tempfile
-import time
-from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Final
 
+from benchmarks.clock import Job, timed
 from satAOI_adapters import read_plan, write_aoi
-from satAOI_adapters.dxf_read import ReadOptions
 from satAOI_geo.aoi import area
 from satAOI_geo.freespace import free_space
 from satAOI_geo.intervals import Intervals
@@ -30,8 +28,6 @@ from satAOI_geo.robot import ROBOTS
 
 SAMPLE: Final = Path(__file__).parents[1] / "samples" / "hall_complex.dxf"
 COMMAND: Final = "import sys; from satAOI_geo.cli import main; sys.exit(main())"
-
-Job: TypeAlias = Callable[[], object]
 
 
 def main() -> None:
@@ -44,14 +40,14 @@ def main() -> None:
         jobs = stages(asked.drawing, Path(folder)) | commands(asked.drawing, Path(folder))
         medians = {name: timed(job, asked.runs) for name, job in jobs.items()}
     for name, median in medians.items():
-        sys.stderr.write(f"{name:<30} {median['clock_s']:8.3f} s {median['cores_s']:8.3f} s\n")
+        sys.stderr.write(f"{name:<30} {median.clock_s:8.3f} s {median.cores_s:8.3f} s\n")
     figures = {
         "drawing": asked.drawing.name,
         "runs": asked.runs,
         "cores": os.cpu_count(),
         "machine": platform.machine(),
         "python": platform.python_version(),
-        "medians": medians,
+        "medians": {name: asdict(median) for name, median in medians.items()},
     }
     sys.stdout.write(json.dumps(figures, indent=2) + "\n")
 
@@ -59,14 +55,14 @@ def main() -> None:
 def stages(drawing: Path, folder: Path) -> dict[str, Job]:
     """One job a stage, each on the result of the stages before it."""
     robot = ROBOTS["magicbim"]
-    plan = read_plan(drawing, ReadOptions())
+    plan = read_plan(drawing)
     lattice = Lattice.over(plan.floor.bounds, robot)
     engine = Intervals(plan, robot, lattice)
     space = free_space(engine, robot, lattice)
     free = space.free_nodes()
     result = area_of_interest(plan, robot)
     return {
-        "read the drawing": lambda: read_plan(drawing, ReadOptions()),
+        "read the drawing": lambda: read_plan(drawing),
         "free space": lambda: free_space(Intervals(plan, robot, lattice), robot, lattice),
         "disc-connected sets": lambda: DiscComponents.of(free),
         "pose-connected sets": lambda: PoseComponents.of(engine, robot, space),
@@ -85,27 +81,6 @@ def commands(drawing: Path, folder: Path) -> dict[str, Job]:
         return lambda: subprocess.run(arguments, check=True)  # noqa: S603  the command timed
 
     return {f"whole command, {rule}": command(rule) for rule in ("disc", "pose")}
-
-
-def timed(job: Job, n_runs: int) -> dict[str, float]:
-    """Median times of a job; the first run, which compiles, does not count."""
-    job()
-    runs = [timed_once(job) for _ in range(n_runs)]
-    clocks_s, cores_s = zip(*runs, strict=True)
-    return {"clock_s": statistics.median(clocks_s), "cores_s": statistics.median(cores_s)}
-
-
-def timed_once(job: Job) -> tuple[float, float]:
-    """Seconds on the clock, and of all cores in this process and the ones it has started."""
-    before_s, begin_s = cores_used_s(), time.perf_counter()
-    job()
-    return time.perf_counter() - begin_s, cores_used_s() - before_s
-
-
-def cores_used_s() -> float:
-    """Processor time so far, of all threads and of the processes that have ended."""
-    used = os.times()
-    return used.user + used.system + used.children_user + used.children_system
 
 
 if __name__ == "__main__":

@@ -2,22 +2,18 @@
 
 import itertools
 import math
-import random
 
-import numpy as np
 import pytest
 import shapely
 
+from benchmarks.driving import driven, points_in_the_area
 from satAOI_geo.collision import Collider
 from satAOI_geo.errors import NoRouteError
 from satAOI_geo.progress import Stopwatch
-from satAOI_geo.robot import PROTOTYPE, Pose
-from satAOI_geo.route import Route, RouteMap
+from satAOI_geo.robot import PROTOTYPE
+from satAOI_geo.route import RouteMap
 from satAOI_geo.search import Search, Settings, search
 from tests import plans
-
-STEP_MM = 2.0
-TURN_RAD = math.radians(0.5)
 
 SETTINGS = Settings(step_mm=20.0)
 
@@ -25,38 +21,6 @@ SETTINGS = Settings(step_mm=20.0)
 def searched(seed: int) -> Search:
     plan = plans.random_plan(seed, n_obstacles=5, side_mm=(4000, 6000))
     return search(plan, PROTOTYPE, SETTINGS, start=None, watch=Stopwatch())
-
-
-def between(a: Pose, b: Pose) -> list[Pose]:
-    """Poses from a to b, at most STEP_MM and TURN_RAD apart, both ends included."""
-    ends = np.array([(p.x_mm, p.y_mm, p.a1_rad, p.a2_rad) for p in (a, b)])
-    way = np.abs(ends[1] - ends[0])
-    n = max(1, math.ceil(math.hypot(*way[:2]) / STEP_MM), math.ceil(max(way[2:]) / TURN_RAD))
-    return [Pose(*ends[0] + (ends[1] - ends[0]) * k / n) for k in range(n + 1)]
-
-
-def driven(route: Route) -> list[Pose]:
-    """All poses of a route, finely."""
-    poses = route.poses()
-    steps = [pose for pair in itertools.pairwise(poses) for pose in between(*pair)]
-    return steps or poses
-
-
-def points_in_the_area(found: Search, seed: int, n: int) -> list[tuple[float, float]]:
-    """Points that a disc at a reached node covers, at random."""
-    draw = random.Random(seed)
-    nodes = np.argwhere(found.pose.nodes(found.start.pose_label)).tolist()
-    points = []
-    for _ in range(n):
-        iy, ix = draw.choice(nodes)
-        angle_rad, off_mm = draw.uniform(0, 2 * math.pi), draw.uniform(0, 349.9)
-        points.append(
-            (
-                found.lattice.x_mm(ix) + off_mm * math.cos(angle_rad),
-                found.lattice.y_mm(iy) + off_mm * math.sin(angle_rad),
-            )
-        )
-    return points
 
 
 @pytest.mark.parametrize("seed", [1, 4, 6, 9, 12])

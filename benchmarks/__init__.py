@@ -1,0 +1,1 @@
+"""The project against its alternatives, and against the clock; README.md tells how to run each."""
