@@ -488,6 +488,79 @@ def test_an_inspection_in_json_is_nothing_else(
     assert json.loads(capsys.readouterr().out)["source"]["unit"] == "mm"
 
 
+def test_an_inspection_draws_the_plan_and_writes_its_layers(
+    room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    picture, layers = room.with_name("room.png"), room.with_name("mine.toml")
+    written = ["--picture", str(picture), "--write-layers", str(layers)]
+    assert main(["inspect", str(room), *written]) == 0
+    said = capsys.readouterr()
+    assert "COLUMN" in said.out
+    assert said.err == f"note: wrote {layers}\nnote: wrote {picture}\n"
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    without = figures(capsys, room, "--step", 100)
+    with_layers = figures(capsys, room, "--step", 100, "--layers", layers)
+    del without["timing_s"], with_layers["timing_s"]
+    assert with_layers == without
+
+
+def test_a_model_is_drawn_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    picture = tmp_path / "storey.svg"
+    model = ROOT / "samples" / "two_rooms_900.ifc"
+    assert main(["inspect", str(model), "--picture", str(picture)]) == 0
+    assert "storey" in capsys.readouterr().out
+    assert b"<svg" in picture.read_bytes()
+
+
+def test_an_inspection_tells_the_layers_of_a_drawing_whose_unit_is_not_known(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan = drawn_room(tmp_path / "room.dxf", insunits=0, unit_mm=10)
+    layers, picture = tmp_path / "mine.toml", tmp_path / "room.png"
+    written = ["--write-layers", str(layers), "--picture", str(picture)]
+    assert main(["inspect", str(plan), *written]) == 3
+    said = capsys.readouterr()
+    assert "COLUMN" in said.out
+    assert "=COLUMN" in layers.read_text(encoding="utf-8")
+    assert not picture.exists()
+    assert said.err.splitlines()[-1].startswith("error: no unit of length")
+    assert main(["inspect", str(plan), "--json"]) == 3
+    assert "--units" in json.loads(capsys.readouterr().out)["error"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["--picture", "plan.pdf"], "must end in .png or .svg"),
+        (["--write-layers", "layers.dxf"], "must end in .toml"),
+        (["--picture", "nowhere/plan.png"], "no folder 'nowhere'"),
+        (["--layers", "mine.toml", "--write-layers", "mine.toml"], "is an input"),
+        (["--plan", "9"], "there is no plan 9"),
+    ],
+    ids=" ".join,
+)
+def test_an_inspection_that_cannot_be_written_is_one_line_and_an_exit_code(
+    arguments: list[str],
+    complaint: str,
+    room: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(room.parent)
+    Path("mine.toml").write_text("", encoding="utf-8")
+    assert main(["inspect", room.name, *arguments]) == 2
+    assert complaint in capsys.readouterr().err
+    assert {file.name for file in room.parent.iterdir()} == {"room.dxf", "mine.toml"}
+
+
+def test_layers_of_a_model_cannot_be_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = ROOT / "samples" / "two_rooms_900.ifc"
+    assert main(["inspect", str(model), "--write-layers", str(tmp_path / "mine.toml")]) == 2
+    assert "--write-layers says nothing about a plan in IFC" in the_error(capsys)
+
+
 def test_the_version_is_the_packages(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"satAOI-geo {satAOI_geo.__version__}\n"

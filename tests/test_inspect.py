@@ -1,16 +1,17 @@
 """How a drawing is read, as data and as tables."""
 
 import json
+import math
 from pathlib import Path
 
 import ezdxf
 import pytest
 
-from satAOI_adapters import inspect_plan, inspect_write
+from satAOI_adapters import inspect_plan, inspect_write, read_plan
 from satAOI_adapters.dxf_read import ReadOptions
 from satAOI_adapters.dxf_read.inspection import Inspection, LayerFigures
 from satAOI_adapters.layers import Certainty, Meaning
-from satAOI_geo import UnitError
+from satAOI_geo import DrawingError, UnitError
 
 SAMPLES = Path(__file__).parents[1] / "samples"
 
@@ -37,9 +38,9 @@ def layer_of(inspection: Inspection, name: str) -> LayerFigures:
 
 
 def inspected(path: Path, **options: str) -> Inspection:
-    inspection = inspect_plan(path, ReadOptions(**options))
-    assert isinstance(inspection, Inspection)
-    return inspection
+    figures = inspect_plan(path, ReadOptions(**options)).figures
+    assert isinstance(figures, Inspection)
+    return figures
 
 
 def test_a_layer_tells_what_it_is_taken_for_and_why(drawing: Path) -> None:
@@ -77,13 +78,60 @@ def test_the_unit_comes_with_its_source(drawing: Path) -> None:
     assert inspected(drawing, units="ft").source.unit_source == "option"
 
 
-def test_without_any_unit_the_error_shows_the_sizes(drawing: Path) -> None:
+def without_unit(drawing: Path) -> Path:
+    """The same drawing where nothing tells the unit, and a line of 400 units on layer WALL."""
     document = ezdxf.readfile(drawing)
     document.header["$INSUNITS"] = 0
     document.modelspace().add_line((0, 0), (400, 0), dxfattribs={"layer": "WALL"})
     document.save()
-    with pytest.raises(UnitError, match=r"--units mm for 0\.4 × 0\.004 m"):
-        inspected(drawing)
+    return drawing
+
+
+def test_without_any_unit_the_error_shows_the_sizes(drawing: Path) -> None:
+    error = inspect_plan(without_unit(drawing)).error
+    assert isinstance(error, UnitError)
+    assert "--units mm for 0.4 × 0.004 m" in str(error)
+
+
+def test_without_any_unit_the_layers_are_told_and_nothing_is_measured(drawing: Path) -> None:
+    inspection = inspected(without_unit(drawing))
+    wall = layer_of(inspection, "WALL")
+    assert (wall.meaning, wall.entities) == (Meaning.WALL, {"LINE": 3})
+    assert (wall.length_mm, wall.area_mm2, inspection.size_mm) == (None, None, None)
+    facts, layers = inspect_write.tables_of(inspection)
+    assert ("unit", "not known") in facts
+    assert layers[2] == ("WALL", "wall", "certain", "WALL", "-", "-", "3 LINE")
+
+
+def test_areas_are_those_of_closed_shapes_overlaps_counted_once(drawing: Path) -> None:
+    document = ezdxf.readfile(drawing)
+    space = document.modelspace()
+    for x in (0, 1):
+        corners = [(x, 0), (x + 2, 0), (x + 2, 1), (x, 1)]
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "COLUMN"})
+    document.save()
+    inspection = inspected(drawing)
+    assert layer_of(inspection, "COLUMN").area_mm2 == pytest.approx(3e6, rel=1e-12)
+    assert layer_of(inspection, "Zeug").area_mm2 == pytest.approx(math.pi * 0.25e6, rel=1e-12)
+    assert layer_of(inspection, "WALL").area_mm2 == 0
+
+
+def test_the_plan_comes_along_and_so_do_its_findings(drawing: Path) -> None:
+    found = inspect_plan(drawing)
+    assert found.plan == read_plan(drawing)
+    assert found.findings == found.plan.findings
+    assert found.error is None
+
+
+def test_why_no_plan_comes_of_a_drawing_is_told_beside_its_layers(drawing: Path) -> None:
+    document = ezdxf.readfile(drawing)
+    document.modelspace().add_line((1, 1), (2, 2), dxfattribs={"layer": "FLOOR"})
+    document.save()
+    found = inspect_plan(drawing)
+    assert found.plan is None
+    assert isinstance(found.error, DrawingError)
+    assert inspected(drawing).error == str(found.error)
+    assert layer_of(inspected(drawing), "FLOOR").meaning is Meaning.FLOOR
 
 
 def test_the_tables_have_a_line_a_layer(drawing: Path) -> None:
@@ -120,7 +168,7 @@ def test_a_models_storeys_are_told() -> None:
     model = SAMPLES / "two_rooms_900.ifc"
     if not model.exists():
         pytest.skip("no sample model")
-    facts, storeys, classes = inspect_write.tables_of(inspect_plan(model))
+    facts, storeys, classes = inspect_write.tables_of(inspect_plan(model).figures)
     assert facts[0][0] == "model"
     assert storeys[1][0] == "1"
     assert classes[0] == ("class", "number")

@@ -7,6 +7,7 @@ from pydantic import TypeAdapter
 
 from satAOI_adapters.dxf_read.inspection import Inspection as DxfInspection
 from satAOI_adapters.dxf_read.inspection import LayerFigures
+from satAOI_geo.units import MM2_PER_M2
 
 if TYPE_CHECKING:
     from satAOI_adapters.ifc_read import Inspection as IfcInspection
@@ -25,30 +26,38 @@ def json_of(inspection: "DxfInspection | IfcInspection") -> str:
 def tables_of(inspection: "DxfInspection | IfcInspection") -> list[Table]:
     """The inspection as tables: facts first, then plans and layers, or storeys and classes."""
     if isinstance(inspection, DxfInspection):
-        return [_drawing(inspection), _plans(inspection), _layers(inspection)]
+        plans = [_plans(inspection)] if inspection.plans else []
+        return [_drawing(inspection), *plans, _layers(inspection)]
     return [_model(inspection), _storeys(inspection), _classes(inspection)]
 
 
 def _drawing(inspection: DxfInspection) -> Table:
     left, bottom, right, top = inspection.bounds
-    width_mm, height_mm = inspection.size_mm
     source = inspection.source
     return [
         ("drawing", f"{source.path} ({inspection.version})"),
-        ("unit", f"{source.unit} ({source.unit_source})"),
-        ("size", f"{width_mm / MM_PER_M:.2f} × {height_mm / MM_PER_M:.2f} m"),
+        ("unit", f"{source.unit} ({source.unit_source})" if source.unit else "not known"),
+        ("size", "-" if inspection.size_mm is None else _size(inspection.size_mm)),
         ("from", f"{left:.10g},{bottom:.10g} in drawing units"),
         ("to", f"{right:.10g},{top:.10g}"),
     ]
 
 
 def _plans(inspection: DxfInspection) -> Table:
-    corners = [(str(plan.number), *(f"{x:.10g}" for x in plan.bounds)) for plan in inspection.plans]
-    return [("plan", "left", "bottom", "right", "top"), *corners]
+    rows = [
+        (str(plan.number), *(f"{x:.10g}" for x in plan.bounds), _size(plan.size_mm))
+        for plan in inspection.plans
+    ]
+    return [("plan", "left", "bottom", "right", "top", "size"), *rows]
+
+
+def _size(size_mm: tuple[float, float]) -> str:
+    width_mm, height_mm = size_mm
+    return f"{width_mm / MM_PER_M:.2f} × {height_mm / MM_PER_M:.2f} m"
 
 
 def _layers(inspection: DxfInspection) -> Table:
-    heads = ("layer", "read as", "sure", "pattern", "length m", "entities")
+    heads = ("layer", "read as", "sure", "pattern", "area m²", "length m", "entities")
     return [heads, *(_layer(layer) for layer in inspection.layers)]
 
 
@@ -59,7 +68,8 @@ def _layer(layer: LayerFigures) -> tuple[str, ...]:
         layer.meaning or ("-" if layer.entities else "not read"),
         layer.certainty,
         layer.pattern or "-",
-        f"{layer.length_mm / MM_PER_M:.2f}",
+        "-" if layer.area_mm2 is None else f"{layer.area_mm2 / MM2_PER_M2:.2f}",
+        "-" if layer.length_mm is None else f"{layer.length_mm / MM_PER_M:.2f}",
         ", ".join([*_counted(layer.entities), *hidden]),
     )
 

@@ -35,6 +35,10 @@ HUMP: Final = re.compile(r"(?<=[a-z])(?=[A-Z])")
 """Where `OuterWall` parts into two words."""
 
 
+EXACT: Final = "="
+"""In front of a name: this name and no other, letter for letter."""
+
+
 class Meaning(StrEnum):
     """What a layer or a block stands for; the first five are kinds of obstacle."""
 
@@ -89,6 +93,36 @@ class Verdict:
     certainty: Certainty = Certainty.UNKNOWN
 
 
+@dataclass(frozen=True, slots=True)
+class Named:
+    """A layer or a block of a drawing, without the prefix of an external reference.
+
+    Attributes:
+        name: Its name.
+        verdict: What it means by its name alone.
+        counts: What is drawn on it or in it: how many entities of each type.
+    """
+
+    name: str
+    verdict: Verdict
+    counts: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class LayerMap:
+    """Which layer and which block of a drawing is taken for what.
+
+    Attributes:
+        layers: All on which something is drawn, by name.
+        blocks: Those whose name means something, by name.
+        is_own: Whether the user's file took the place of the built-in table.
+    """
+
+    layers: tuple[Named, ...]
+    blocks: tuple[Named, ...]
+    is_own: bool
+
+
 class LayersFile(BaseModel):
     """A TOML file of layer patterns: kinds in order of precedence, each with its patterns."""
 
@@ -126,10 +160,17 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class LayerTable:
-    """Which layer and which block means what: the first rule that matches decides."""
+    """Which layer and which block means what: the first rule that matches decides.
+
+    Attributes:
+        layers: Rules for layers.
+        blocks: Rules for blocks.
+        is_own: Whether the user's file takes the place of the built-in table.
+    """
 
     layers: tuple[Rule, ...]
     blocks: tuple[Rule, ...]
+    is_own: bool = False
 
     def of_layer(self, name: str) -> Verdict:
         """What a layer of this name means; prefixes of external references are dropped."""
@@ -152,7 +193,7 @@ def layer_table(own: Path | None = None) -> LayerTable:
     file = _read(own)
     layers, blocks = _rules(file.layers, given=True), _rules(file.blocks, given=True)
     if file.replace:
-        return LayerTable(layers, blocks)
+        return LayerTable(layers, blocks, is_own=True)
     return LayerTable(layers + built_in.layers, blocks + built_in.blocks)
 
 
@@ -200,6 +241,8 @@ def _first(rules: tuple[Rule, ...], name: str) -> Verdict:
 @cache
 def _matches(pattern: str, name: str) -> bool:
     """Whether a pattern fits: a glob the whole name, a plain word any word, a name itself."""
+    if pattern.startswith(EXACT):
+        return pattern[1:] == name
     folded_pattern, folded_name = _folded(pattern), _folded(name)
     if "*" in pattern or "?" in pattern:
         return fnmatchcase(folded_name, folded_pattern)

@@ -1,16 +1,41 @@
-"""How a drawing is read, layer by layer, before a plan is made of it."""
+"""How a drawing is read, layer by layer, and what plan comes of it."""
 
-from collections import Counter
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from satAOI_adapters.dxf_read.entities import features_of
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from satAOI_adapters.dxf_read.entities import Feature, features_of
+from satAOI_adapters.dxf_read.obstacles import area_of
 from satAOI_adapters.dxf_read.options import ReadOptions
-from satAOI_adapters.dxf_read.plans import clusters
-from satAOI_adapters.dxf_read.shapes import middle_line
+from satAOI_adapters.dxf_read.plans import Drawn, clusters
+from satAOI_adapters.dxf_read.reading import plan_of
+from satAOI_adapters.dxf_read.shapes import middle_line, shapes_of
 from satAOI_adapters.dxf_read.survey import Survey, survey
-from satAOI_adapters.layers import KINDS, Certainty, Meaning, Verdict
-from satAOI_geo.plan import Finding, Frame, Source
+from satAOI_adapters.inspected import Bounds, Inspected, Sketch
+from satAOI_adapters.layers import (
+    KINDS,
+    Certainty,
+    LayerMap,
+    LayerTable,
+    Meaning,
+    Named,
+    Verdict,
+    layer_table,
+    without_xref_prefix,
+)
+from satAOI_geo.errors import SatAoiError, UnitError
+from satAOI_geo.plan import Circle, Finding, FloorPlan, Frame, Kind, Source
+
+if TYPE_CHECKING:
+    from shapely.geometry import LineString
+
+PART_SIGNS = (*KINDS, Meaning.FLOOR, Meaning.DOOR)
+"""Meanings that tell parts of a drawing from one another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +48,9 @@ class LayerFigures:
         certainty: How sure that is.
         pattern: Pattern of the layer table that tells.
         entities: How many of each type draw lines or areas.
-        length_mm: Of all their lines.
+        area_mm2: That their fills and closed outlines cover, overlaps counted once; None where
+            the unit is not known.
+        length_mm: Of all their lines; None where the unit is not known.
         n_hidden: Entities of the layer that are not read since it is frozen or off.
     """
 
@@ -32,7 +59,8 @@ class LayerFigures:
     certainty: Certainty
     pattern: str
     entities: dict[str, int]
-    length_mm: float
+    area_mm2: float | None
+    length_mm: float | None
     n_hidden: int
 
 
@@ -43,10 +71,12 @@ class PlanFigures:
     Attributes:
         number: For `--plan`; 1 is the likeliest and is read if nothing is said.
         bounds: Left, bottom, right, top in drawing units.
+        size_mm: Width and height.
     """
 
     number: int
-    bounds: tuple[float, float, float, float]
+    bounds: Bounds
+    size_mm: tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,94 +84,190 @@ class Inspection:
     """How a drawing is read.
 
     Attributes:
-        source: The file and its unit.
+        source: The file and its unit; the unit is empty where it is not known.
         version: Of its format, for example AC1024.
         bounds: Left, bottom, right, top of what is drawn, in drawing units.
-        size_mm: Width and height of it.
-        plans: Parts that may be plans, the likeliest first.
+        size_mm: Width and height of it; None where the unit is not known.
+        plans: Parts that may be plans, the likeliest first; none where the unit is not known.
         layers: By name; a layer whose blocks are read differently has several.
         findings: What was skipped, guessed or repaired.
+        error: Why the drawing cannot be used as it is; empty where it can.
     """
 
     source: Source
     version: str
-    bounds: tuple[float, float, float, float]
-    size_mm: tuple[float, float]
+    bounds: Bounds
+    size_mm: tuple[float, float] | None
     plans: tuple[PlanFigures, ...]
     layers: tuple[LayerFigures, ...]
     findings: tuple[Finding, ...]
+    error: str
 
 
 @dataclass(slots=True)
 class _Tally:
-    """Entities of one layer that are read alike, while they are counted."""
+    """What is drawn by entities that are read alike, while it is counted."""
 
     entities: Counter[str] = field(default_factory=Counter)
-    length_mm: float = 0.0
+    features: list[Feature] = field(default_factory=list)
 
 
-def inspect(path: Path, options: ReadOptions) -> Inspection:
+def inspect(path: Path, options: ReadOptions) -> Inspected[Inspection]:
     """How a drawing is read with these options.
+
+    A drawing that holds lines, but no plan as it is, is told of as far as it goes, with the error
+    that reading it ends with.
 
     Raises:
         InputError: If an option or the layer file is wrong.
-        DrawingError: If the drawing cannot be used as it is.
+        DrawingError: If nothing can be told of the drawing.
         LimitError: If it asks for more than `limits` allows.
     """
     drawing = survey(path, options)
-    frame = drawing.frame()
+    plan: FloorPlan | None = None
+    error: SatAoiError | None = None
+    try:
+        plan = plan_of(drawing, options)
+    except SatAoiError as reason:
+        error = reason
+    frame = None if isinstance(drawing.known, UnitError) else drawing.frame()
+    tallies = _tallies(drawing, frame)
+    sketch = None if frame is None else _sketch(tallies, frame)
+    findings = drawing.findings if plan is None else plan.findings
+    figures = Inspection(
+        source=_source(drawing),
+        version=drawing.document.dxfversion,
+        bounds=drawing.box,
+        size_mm=None if frame is None else _size(drawing.box, frame.mm_per_unit),
+        plans=() if sketch is None else _plans(sketch),
+        layers=_layers(tallies, drawing.expansion.hidden, frame),
+        findings=findings,
+        error="" if error is None else str(error),
+    )
+    layers = _layer_map(drawing, layer_table(options.layers))
+    return Inspected(figures, findings, plan, error, sketch, layers)
+
+
+def _source(drawing: Survey) -> Source:
+    if isinstance(drawing.known, UnitError):
+        return Source(str(drawing.path), drawing.sha256, "dxf", unit="", unit_source="unknown")
+    return drawing.source()
+
+
+def _tallies(drawing: Survey, frame: Frame | None) -> dict[tuple[str, Verdict], _Tally]:
+    """What each layer holds, by what it is taken for; features only where the unit is known."""
     tallies: dict[tuple[str, Verdict], _Tally] = {}
     for entity in drawing.seen:
         tally = tallies.setdefault((entity.placed.layer, entity.verdict), _Tally())
         tally.entities[entity.placed.kind] += 1
-        drawn = features_of(entity.placed, frame.mm_per_unit, frame.origin_mm)
-        tally.length_mm += sum(
-            middle_line(path).length for feature in drawn for path in feature.paths
-        )
-    # a layer of which nothing is seen has a line of its own
+        if frame is not None:
+            tally.features.extend(features_of(entity.placed, frame.mm_per_unit, frame.origin_mm))
+    return tallies
+
+
+def _layers(
+    tallies: Mapping[tuple[str, Verdict], _Tally], hidden: Counter[str], frame: Frame | None
+) -> tuple[LayerFigures, ...]:
     seen = {layer for layer, _ in tallies}
-    tallies.update(((layer, Verdict()), _Tally()) for layer in drawing.hidden if layer not in seen)
-    left, bottom, right, top = drawing.box
-    return Inspection(
-        source=Source(str(path), drawing.sha256, "dxf", drawing.unit.name, drawing.unit.source),
-        version=drawing.document.dxfversion,
-        bounds=drawing.box,
-        size_mm=((right - left) * drawing.unit.mm, (top - bottom) * drawing.unit.mm),
-        plans=_plans(drawing, frame),
-        layers=tuple(
-            LayerFigures(
-                layer=layer,
-                meaning=verdict.meaning,
-                certainty=verdict.certainty,
-                pattern=verdict.pattern,
-                entities=dict(tally.entities.most_common()),
-                length_mm=tally.length_mm,
-                n_hidden=drawing.hidden[layer],
-            )
-            for (layer, verdict), tally in sorted(tallies.items(), key=_by_layer)
-        ),
-        findings=drawing.findings,
-    )
-
-
-def _plans(drawing: Survey, frame: Frame) -> tuple[PlanFigures, ...]:
-    """The parts that may be plans, numbered as for `--plan`."""
-    found = clusters(drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR)))
+    # a layer of which nothing is seen has a line of its own
+    unseen = {(layer, Verdict()): _Tally() for layer in hidden if layer not in seen}
     return tuple(
-        PlanFigures(number, _in_drawing(cluster.bounds_mm, frame))
-        for number, cluster in enumerate(found, start=1)
+        LayerFigures(
+            layer=layer,
+            meaning=verdict.meaning,
+            certainty=verdict.certainty,
+            pattern=verdict.pattern,
+            entities=dict(tally.entities.most_common()),
+            area_mm2=None if frame is None else _area_mm2(tally.features),
+            length_mm=None if frame is None else _length_mm(tally.features),
+            n_hidden=hidden[layer],
+        )
+        for (layer, verdict), tally in sorted({**tallies, **unseen}.items(), key=_by_layer)
     )
 
 
-def _in_drawing(
-    bounds_mm: tuple[float, float, float, float], frame: Frame
-) -> tuple[float, float, float, float]:
+def _by_layer(item: tuple[tuple[str, Verdict], _Tally]) -> tuple[str, str, str]:
+    (layer, verdict), _ = item
+    return layer.casefold(), layer, verdict.meaning or ""
+
+
+def _length_mm(features: Iterable[Feature]) -> float:
+    lengths_mm = (middle_line(path).length for feature in features for path in feature.paths)
+    return float(sum(lengths_mm))
+
+
+def _area_mm2(features: Iterable[Feature]) -> float:
+    covered = [region for feature in features for region in _covered(feature)]
+    return float(shapely.union_all(covered).area)
+
+
+def _covered(feature: Feature) -> list[BaseGeometry]:
+    """What a fill, a line with a width, or closed outlines cover."""
+    if feature.is_area or feature.width_mm:
+        shapes = area_of(feature)
+    else:
+        shapes = [s for path in feature.paths if path.closed for s in shapes_of(path)]
+    return [shape.polygon() if isinstance(shape, Circle) else shape for shape in shapes]
+
+
+def _sketch(tallies: Mapping[tuple[str, Verdict], _Tally], frame: Frame) -> Sketch:
+    """All lines, by the kind of obstacle that they are drawn as."""
+    lines: defaultdict[Kind | None, list[LineString]] = defaultdict(list)
+    drawn: Drawn = {meaning: [] for meaning in PART_SIGNS}
+    for (_, verdict), tally in tallies.items():
+        kind = None if verdict.meaning is None else KINDS.get(verdict.meaning)
+        lines[kind].extend(middle_line(path) for f in tally.features for path in f.paths)
+        if verdict.meaning in drawn:
+            drawn[verdict.meaning].extend(tally.features)
+    return Sketch(frame, lines, [cluster.bounds_mm for cluster in clusters(drawn)])
+
+
+def _plans(sketch: Sketch) -> tuple[PlanFigures, ...]:
+    """The parts that may be plans, numbered as for `--plan`."""
+    return tuple(
+        PlanFigures(number, _in_drawing(bounds_mm, sketch.frame), _size(bounds_mm, 1.0))
+        for number, bounds_mm in enumerate(sketch.parts_mm, start=1)
+    )
+
+
+def _in_drawing(bounds_mm: Bounds, frame: Frame) -> Bounds:
     """Bounds in drawing units."""
     left, bottom = frame.to_drawing(bounds_mm[:2]).tolist()
     right, top = frame.to_drawing(bounds_mm[2:]).tolist()
     return left, bottom, right, top
 
 
-def _by_layer(item: tuple[tuple[str, Verdict], _Tally]) -> tuple[str, str, str]:
-    (layer, verdict), _ = item
-    return layer.casefold(), layer, verdict.meaning or ""
+def _size(bounds: Bounds, mm_per_unit: float) -> tuple[float, float]:
+    """Width and height in millimetres."""
+    left, bottom, right, top = bounds
+    return (right - left) * mm_per_unit, (top - bottom) * mm_per_unit
+
+
+def _layer_map(drawing: Survey, table: LayerTable) -> LayerMap:
+    """What the layers and blocks of the drawing mean by their names."""
+    layers: defaultdict[str, Counter[str]] = defaultdict(Counter)
+    blocks: defaultdict[str, Counter[str]] = defaultdict(Counter)
+    for placed in drawing.expansion.placed:
+        layers[without_xref_prefix(placed.layer)][placed.kind] += 1
+        for name in placed.blocks:
+            blocks[without_xref_prefix(name)][placed.kind] += 1
+    for layer, n_hidden in drawing.expansion.hidden.items():
+        layers[without_xref_prefix(layer)]["hidden"] += n_hidden
+    for missing in drawing.expansion.missing:
+        layers[without_xref_prefix(missing.layer)]["reference"] += 1
+        blocks[without_xref_prefix(missing.name)]["reference"] += 1
+    return LayerMap(
+        layers=_named(layers, table.of_layer),
+        blocks=tuple(b for b in _named(blocks, table.of_block) if b.verdict.meaning is not None),
+        is_own=table.is_own,
+    )
+
+
+def _named(
+    counts: Mapping[str, Counter[str]], verdict_of: Callable[[str], Verdict]
+) -> tuple[Named, ...]:
+    """Names in order, each with what it means and what is drawn under it."""
+    return tuple(
+        Named(name, verdict_of(name), dict(counts[name].most_common()))
+        for name in sorted(counts, key=lambda name: (name.casefold(), name))
+    )

@@ -41,7 +41,6 @@ from satAOI_geo.plan import (
     Obstacle,
     Region,
     Shape,
-    Source,
 )
 
 START_LAYER: Final = "SATAOI-START"
@@ -65,7 +64,11 @@ def read(path: Path, options: ReadOptions) -> FloorPlan:
         DrawingError: If the drawing cannot be used as it is.
         LimitError: If it asks for more than `limits` allows.
     """
-    drawing = survey(path, options)
+    return plan_of(survey(path, options), options)
+
+
+def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
+    """The floor plan in a drawing that has been surveyed; errors as for `read`."""
     frame = drawing.frame()
     start_mm, start_findings = _start(drawing, frame, options)
     everything = drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
@@ -88,7 +91,7 @@ def read(path: Path, options: ReadOptions) -> FloorPlan:
         ),
         floor_source=floor.source,
         frame=frame,
-        source=Source(str(path), drawing.sha256, "dxf", drawing.unit.name, drawing.unit.source),
+        source=drawing.source(),
         start_mm=start_mm,
     )
     return _from_corner(plan)

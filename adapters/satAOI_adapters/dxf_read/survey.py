@@ -19,12 +19,12 @@ from satAOI_adapters.dxf_read.meaning import LISTED, Seen, with_meaning
 from satAOI_adapters.dxf_read.opening import open_drawing
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.plans import Drawn
-from satAOI_adapters.dxf_read.units import Unit, unit_of
+from satAOI_adapters.dxf_read.units import Known, Unit, unit_of
 from satAOI_adapters.dxf_read.unread import missing_xrefs, unread_entities
 from satAOI_adapters.dxf_read.xrefs import xrefs_in
 from satAOI_adapters.layers import LayerTable, Meaning, layer_table
-from satAOI_geo.errors import EmptyPlanError
-from satAOI_geo.plan import Finding, FloatArray, Frame
+from satAOI_geo.errors import EmptyPlanError, UnitError
+from satAOI_geo.plan import Finding, FloatArray, Frame, Source
 
 FEET_AND_INCHES: Final = (3, 4)
 """$LUNITS of a drawing that writes lengths in feet and inches."""
@@ -42,29 +42,59 @@ class Survey:
         sha256: Digest of its bytes.
         document: As ezdxf holds it.
         seen: Visible entities that draw lines or areas, with their meaning.
-        hidden: Entities on layers that are frozen or off, by layer.
-        unit: The unit of length.
+        expansion: All that the drawing shows, hides or lacks.
+        known: The unit of length and what is to be said about it, or why it is not known; the
+            layers can be told without it.
         box: Left, bottom, right, top of what is drawn, in drawing units.
         door_blocks: Names of blocks that are doors.
         is_named: Whether layers tell what stops the robot, rather than everything being walls.
         middle: In the midst of it, in drawing units; a few strays do not move it.
-        findings: What was noticed so far.
+        noticed: What was noticed so far, the unit aside.
     """
 
     path: Path
     sha256: str
     document: Drawing
     seen: tuple[Seen, ...]
-    hidden: Counter[str]
-    unit: Unit
+    expansion: Expansion
+    known: Known | UnitError
     box: tuple[float, float, float, float]
     middle: Point
     door_blocks: frozenset[str]
     is_named: bool
-    findings: tuple[Finding, ...]
+    noticed: tuple[Finding, ...]
+
+    @property
+    def unit(self) -> Unit:
+        """The unit of length.
+
+        Raises:
+            UnitError: If it is not known.
+        """
+        if isinstance(self.known, UnitError):
+            raise self.known
+        return self.known.unit
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What was noticed so far."""
+        of_unit = () if isinstance(self.known, UnitError) else self.known.findings
+        return (*of_unit, *self.noticed)
+
+    def source(self) -> Source:
+        """The file and its unit.
+
+        Raises:
+            UnitError: If the unit is not known.
+        """
+        return Source(str(self.path), self.sha256, "dxf", self.unit.name, self.unit.source)
 
     def frame(self) -> Frame:
-        """A frame of whole millimetres in the midst of what is drawn."""
+        """A frame of whole millimetres in the midst of what is drawn.
+
+        Raises:
+            UnitError: If the unit is not known.
+        """
         x_mm, y_mm = self.middle[0] * self.unit.mm, self.middle[1] * self.unit.mm
         origin_mm = (float(math.floor(x_mm)), float(math.floor(y_mm)))
         return Frame(origin_mm=origin_mm, mm_per_unit=self.unit.mm)
@@ -124,21 +154,24 @@ def survey(path: Path, options: ReadOptions) -> Survey:
         [placed.entity for placed in expansion.placed if placed.kind not in DRAWN],
         in_feet_and_inches=header.get("$LUNITS", 2) in FEET_AND_INCHES,
     )
-    known = unit_of(header.get("$INSUNITS", NO_UNIT), options.units, guess, size, path.name)
+    known: Known | UnitError
+    try:
+        known = unit_of(header.get("$INSUNITS", NO_UNIT), options.units, guess, size, path.name)
+    except UnitError as error:
+        known = error
     return Survey(
         path=path,
         sha256=opened.sha256,
         document=opened.document,
         seen=tuple({id(entity): entity for entity, _ in near}.values()),
-        hidden=expansion.hidden,
-        unit=known.unit,
+        expansion=expansion,
+        known=known,
         box=box,
         middle=middle,
         door_blocks=_door_blocks(seen, table),
         is_named=not fallback,
-        findings=(
+        noticed=(
             *opened.findings,
-            *known.findings,
             *expansion.findings,
             *_hidden(expansion.hidden),
             *unread,
