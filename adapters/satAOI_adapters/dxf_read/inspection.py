@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from satAOI_adapters.dxf_read.entities import Feature, features_of
+from satAOI_adapters.dxf_read.entities import Feature
+from satAOI_adapters.dxf_read.meaning import Seen
 from satAOI_adapters.dxf_read.obstacles import area_of
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.plans import Drawn, clusters
 from satAOI_adapters.dxf_read.reading import plan_of
 from satAOI_adapters.dxf_read.shapes import middle_line, shapes_of
-from satAOI_adapters.dxf_read.survey import Survey, survey
+from satAOI_adapters.dxf_read.survey import Survey, drawn_by, survey
 from satAOI_adapters.inspected import Bounds, Inspected, Sketch
 from satAOI_adapters.layers import (
     KINDS,
@@ -158,11 +159,17 @@ def _tallies(drawing: Survey, frame: Frame | None) -> dict[tuple[str, Verdict], 
     """What each layer holds, by what it is taken for; features only where the unit is known."""
     tallies: dict[tuple[str, Verdict], _Tally] = {}
     for entity in drawing.seen:
-        tally = tallies.setdefault((entity.placed.layer, entity.verdict), _Tally())
+        tally = tallies.setdefault(_alike(entity), _Tally())
         tally.entities[entity.placed.kind] += 1
-        if frame is not None:
-            tally.features.extend(features_of(entity.placed, frame.mm_per_unit, frame.origin_mm))
+    if frame is not None:
+        for entity, features in drawn_by(drawing.seen, frame):
+            tallies[_alike(entity)].features.extend(features)
     return tallies
+
+
+def _alike(entity: Seen) -> tuple[str, Verdict]:
+    """What entities have in common that are told together."""
+    return entity.placed.layer, entity.verdict
 
 
 def _layers(

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -107,15 +107,25 @@ class Survey:
             LimitError: If there are too many corners.
         """
         found: Drawn = {meaning: [] for meaning in wanted}
-        n_pieces = 0
-        for entity in self.seen:
-            if entity.verdict.meaning not in found:
-                continue
-            features = features_of(entity.placed, frame.mm_per_unit, frame.origin_mm)
+        own = [entity for entity in self.seen if entity.verdict.meaning in found]
+        for entity, features in drawn_by(own, frame):
             found[entity.verdict.meaning].extend(features)
-            n_pieces += sum(len(path.pieces) for feature in features for path in feature.paths)
-            limits.hold("corners", n_pieces, limits.MAX_VERTICES, "simplify the drawing")
         return found
+
+
+def drawn_by(entities: Iterable[Seen], frame: Frame) -> Iterator[tuple[Seen, list[Feature]]]:
+    """What each of some entities draws, in millimetres of a frame.
+
+    Raises:
+        DrawingError: If an entity cannot be read.
+        LimitError: If there are too many corners.
+    """
+    n_pieces = 0
+    for entity in entities:
+        features = features_of(entity.placed, frame.mm_per_unit, frame.origin_mm)
+        n_pieces += sum(len(path.pieces) for feature in features for path in feature.paths)
+        limits.hold("corners", n_pieces, limits.MAX_VERTICES, "simplify the drawing")
+        yield entity, features
 
 
 def survey(path: Path, options: ReadOptions) -> Survey:
