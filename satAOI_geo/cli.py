@@ -408,11 +408,12 @@ def files_of(outputs: Outputs) -> list[Path]:
 def write(result: "Result", outputs: Outputs) -> None:
     """Write what was asked for, each file whole or not at all."""
     from satAOI_adapters import report_write, write_aoi
+    from satAOI_adapters.files import json_of
 
     for path in areas_of(outputs):
         write_aoi(path, result)
     if outputs["report"] == STANDARD_OUTPUT:
-        click.echo(report_write.json_of(result.report), nl=False)
+        click.echo(json_of(result.report), nl=False)
     elif outputs["report"] is not None:
         report_write.write(outputs["report"], result.report)
 
@@ -520,10 +521,11 @@ def write_drafts(plan: Path, found: "Inspection", options: InspectOptions) -> No
 def tell_figures(found: "Inspection", *, json: bool) -> None:
     """Print an inspection's figures as tables or as JSON."""
     from satAOI_adapters import inspect_write
+    from satAOI_adapters.files import json_of
     from satAOI_adapters.terminal import write_table
 
     if json:
-        click.echo(inspect_write.json_of(found.figures), nl=False)
+        click.echo(json_of(found.figures), nl=False)
         return
     for number, table in enumerate(inspect_write.tables_of(found.figures)):
         click.echo("\n" * min(number, 1), nl=False)

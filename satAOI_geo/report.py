@@ -1,13 +1,11 @@
 """The figures of a run as data: one versioned schema."""
 
 import math
-from dataclasses import asdict
-from typing import Any, Literal
-
-from pydantic import BaseModel, ConfigDict, Field
+from dataclasses import asdict, dataclass
+from typing import Literal
 
 from satAOI_geo.aoi import Aoi
-from satAOI_geo.plan import FloorPlan
+from satAOI_geo.plan import Finding, FloorPlan
 from satAOI_geo.reach import State
 from satAOI_geo.reasons import Patch
 from satAOI_geo.robot import Robot
@@ -16,13 +14,8 @@ from satAOI_geo.units import MM2_PER_M2
 from satAOI_geo.zones import SetDown, Zone
 
 
-class Section(BaseModel):
-    """A group of figures: frozen, and no key that the schema does not know."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class InputFigures(Section):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InputFigures:
     """The file that was read."""
 
     path: str
@@ -31,8 +24,21 @@ class InputFigures(Section):
     unit: str
     unit_source: str
 
+    @classmethod
+    def of(cls, plan: FloorPlan) -> "InputFigures":
+        """Where a plan came from."""
+        source = plan.source
+        return cls(
+            path=source.path,
+            sha256=source.sha256,
+            format=source.format,
+            unit=source.unit,
+            unit_source=source.unit_source,
+        )
 
-class RobotFigures(Section):
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotFigures:
     """The robot's measures; lengths in mm, angles in degrees as in the robot's file."""
 
     name: str
@@ -45,8 +51,24 @@ class RobotFigures(Section):
     swing_max_deg: float
     clearance_mm: float
 
+    @classmethod
+    def of(cls, robot: Robot, clearance_mm: float) -> "RobotFigures":
+        """The measures of a robot, and the clearance it keeps."""
+        return cls(
+            name=robot.name,
+            vehicle_length_mm=robot.vehicle_length_mm,
+            vehicle_width_mm=robot.vehicle_width_mm,
+            pivot_offset_mm=robot.pivot_offset_mm,
+            arm_length_mm=robot.arm_length_mm,
+            disc_radius_mm=robot.disc_radius_mm,
+            swing_min_deg=math.degrees(robot.swing_min_rad),
+            swing_max_deg=math.degrees(robot.swing_max_rad),
+            clearance_mm=clearance_mm,
+        )
 
-class LatticeFigures(Section):
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LatticeFigures:
     """The lattice; the origin in the drawing's axes, shape [rows, columns]."""
 
     step_mm: float
@@ -57,8 +79,23 @@ class LatticeFigures(Section):
     n_directions: int
     n_swings: int
 
+    @classmethod
+    def of(cls, found: Search) -> "LatticeFigures":
+        """The lattice of a search."""
+        lattice = found.lattice
+        return cls(
+            step_mm=lattice.step_mm,
+            origin_mm=_in_drawing_mm(found.plan, lattice.origin_mm),
+            turn_deg=math.degrees(found.plan.frame.turn_rad),
+            turn_source="walls" if found.settings.align_rad is None else "option",
+            shape=lattice.shape,
+            n_directions=lattice.n_directions,
+            n_swings=len(lattice.swings),
+        )
 
-class FloorFigures(Section):
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FloorFigures:
     """The floor and what stands on it."""
 
     area_m2: float
@@ -68,8 +105,22 @@ class FloorFigures(Section):
     free_area_m2: float
     n_obstacles: int
 
+    @classmethod
+    def of(cls, plan: FloorPlan) -> "FloorFigures":
+        """The figures of a floor; the obstacle area is that on it, overlaps counted once."""
+        obstacle_mm2 = plan.obstacle_region().area
+        return cls(
+            area_m2=plan.floor.area / MM2_PER_M2,
+            source=plan.floor_source,
+            obstacle_area_m2=obstacle_mm2 / MM2_PER_M2,
+            obstacle_percent=100 * obstacle_mm2 / plan.floor.area,
+            free_area_m2=plan.free_region().area / MM2_PER_M2,
+            n_obstacles=len(plan.obstacles),
+        )
 
-class PoseFigures(Section):
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PoseFigures:
     """A pose: xy in the drawing's axes, node [row, column], a1 in the drawing's axes, a2."""
 
     xy_mm: tuple[float, float]
@@ -77,7 +128,19 @@ class PoseFigures(Section):
     a1_deg: float
     a2_deg: float
 
+    @classmethod
+    def of(cls, found: Search, state: State) -> "PoseFigures":
+        """A state in the drawing's axes."""
+        plan, pose = found.plan, found.lattice.pose(*state)
+        return cls(
+            xy_mm=_in_drawing_mm(plan, (pose.x_mm, pose.y_mm)),
+            node=(state.iy, state.ix),
+            a1_deg=math.degrees(pose.a1_rad + plan.frame.turn_rad) % 360.0,
+            a2_deg=math.degrees(pose.a2_rad),
+        )
 
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class StartFigures(PoseFigures):
     """Where the robot is set down, and how many components have a pose at that node."""
 
@@ -85,22 +148,34 @@ class StartFigures(PoseFigures):
     n_components: int
 
 
-class FreeFigures(Section):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FreeFigures:
     """Nodes where some pose is free, and all (node, pose) states that are."""
 
     n_nodes: int
     n_states: int
 
 
-class ConnectedFigures(Section):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConnectedFigures:
     """A connected set of nodes and the area its discs cover."""
 
     n_nodes: int
     area_m2: float
     raster_area_m2: float
 
+    @classmethod
+    def of(cls, n_nodes: int, aoi: Aoi) -> "ConnectedFigures":
+        """The figures of a set of nodes."""
+        return cls(
+            n_nodes=n_nodes,
+            area_m2=aoi.area_mm2 / MM2_PER_M2,
+            raster_area_m2=aoi.raster_area_mm2 / MM2_PER_M2,
+        )
 
-class AoiFigures(Section):
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AoiFigures:
     """The area of interest."""
 
     connectivity: Literal["disc", "pose"]
@@ -110,7 +185,8 @@ class AoiFigures(Section):
     n_parts: int
 
 
-class ZoneFigures(Section):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ZoneFigures:
     """What one set-down can trowel; number 1 is the largest."""
 
     number: int
@@ -119,7 +195,8 @@ class ZoneFigures(Section):
     set_down: PoseFigures
 
 
-class SetDownFigures(Section):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetDownFigures:
     """One of the set-downs that together trowel all that any pose can, in greedy order.
 
     The gain is what it adds, by the raster; zone is null for one whose area is below 0.5 m².
@@ -130,7 +207,8 @@ class SetDownFigures(Section):
     set_down: PoseFigures
 
 
-class PatchFigures(Section):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PatchFigures:
     """Free floor that is not reached; narrow gathers the strips narrower than two cells."""
 
     reason: Literal["disc", "arm", "vehicle", "zone", "path"]
@@ -140,24 +218,24 @@ class PatchFigures(Section):
     blocker_handle: str
     blocker_layer: str
 
+    @classmethod
+    def of(cls, plan: FloorPlan, patch: Patch) -> "PatchFigures":
+        """A patch with its label in the drawing's axes."""
+        return cls(
+            reason=patch.reason.value,
+            area_m2=patch.area_mm2 / MM2_PER_M2,
+            label_mm=_in_drawing_mm(plan, patch.label_mm),
+            narrow=patch.narrow,
+            blocker_handle=patch.blocker.handle if patch.blocker else "",
+            blocker_layer=patch.blocker.layer if patch.blocker else "",
+        )
 
-class FindingFigures(Section):
-    """A finding; the position in the drawing's axes."""
 
-    code: str
-    message: str
-    remedy: str
-    layer: str
-    handle: str
-    at_mm: tuple[float, float] | None
-
-
-class Report(Section):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Report:
     """All figures of a run."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
-
-    schema_name: Literal["sataoi-report/1"] = Field(alias="schema")
+    schema: Literal["sataoi-report/1"] = "sataoi-report/1"
     input: InputFigures
     robot: RobotFigures
     lattice: LatticeFigures
@@ -170,7 +248,7 @@ class Report(Section):
     zones: list[ZoneFigures]
     set_downs: list[SetDownFigures]
     unreached: list[PatchFigures]
-    findings: list[FindingFigures]
+    findings: list[Finding]
     timing_s: dict[str, float]
 
 
@@ -185,40 +263,17 @@ def report_of(
     timing_s: dict[str, float],
 ) -> Report:
     """Gather the figures of a run; n_nodes and areas are given for `disc` and `pose`."""
-    plan, lattice, settings = found.plan, found.lattice, found.settings
-    connectivity = settings.connectivity
-    connected = {
-        rule: ConnectedFigures(
-            n_nodes=n_nodes[rule],
-            area_m2=aoi.area_mm2 / MM2_PER_M2,
-            raster_area_m2=aoi.raster_area_mm2 / MM2_PER_M2,
-        )
-        for rule, aoi in areas.items()
-    }
-    floor = _floor_figures(plan)
+    plan, connectivity = found.plan, found.settings.connectivity
+    floor = FloorFigures.of(plan)
+    connected = {rule: ConnectedFigures.of(n_nodes[rule], aoi) for rule, aoi in areas.items()}
     numbers = {zone.label: number for number, zone in enumerate(zones, start=1)}
     return Report(
-        schema="sataoi-report/1",
-        input=InputFigures(
-            path=plan.source.path,
-            sha256=plan.source.sha256,
-            format=plan.source.format,
-            unit=plan.source.unit,
-            unit_source=plan.source.unit_source,
-        ),
-        robot=_robot_figures(found.robot, settings.clearance_mm),
-        lattice=LatticeFigures(
-            step_mm=lattice.step_mm,
-            origin_mm=_in_drawing_mm(plan, lattice.origin_mm),
-            turn_deg=math.degrees(plan.frame.turn_rad),
-            turn_source="walls" if settings.align_rad is None else "option",
-            shape=lattice.shape,
-            n_directions=lattice.n_directions,
-            n_swings=len(lattice.swings),
-        ),
+        input=InputFigures.of(plan),
+        robot=RobotFigures.of(found.robot, found.settings.clearance_mm),
+        lattice=LatticeFigures.of(found),
         floor=floor,
         start=StartFigures(
-            **_pose_figures(found, found.start.state),
+            **asdict(PoseFigures.of(found, found.start.state)),
             source=found.start.source,
             n_components=found.start.n_components,
         ),
@@ -237,7 +292,7 @@ def report_of(
                 number=numbers[zone.label],
                 area_m2=zone.aoi.area_mm2 / MM2_PER_M2,
                 n_nodes=zone.n_nodes,
-                set_down=PoseFigures(**_pose_figures(found, zone.set_down)),
+                set_down=PoseFigures.of(found, zone.set_down),
             )
             for zone in zones
         ],
@@ -245,66 +300,13 @@ def report_of(
             SetDownFigures(
                 zone=numbers.get(one.label),
                 gain_m2=one.gain_mm2 / MM2_PER_M2,
-                set_down=PoseFigures(**_pose_figures(found, one.state)),
+                set_down=PoseFigures.of(found, one.state),
             )
             for one in set_downs
         ],
-        unreached=[_patch_figures(plan, patch) for patch in patches],
-        findings=[FindingFigures(**asdict(finding)) for finding in plan.findings],
+        unreached=[PatchFigures.of(plan, patch) for patch in patches],
+        findings=list(plan.findings),
         timing_s=timing_s,
-    )
-
-
-def _robot_figures(robot: Robot, clearance_mm: float) -> RobotFigures:
-    """The robot's measures."""
-    return RobotFigures(
-        name=robot.name,
-        vehicle_length_mm=robot.vehicle_length_mm,
-        vehicle_width_mm=robot.vehicle_width_mm,
-        pivot_offset_mm=robot.pivot_offset_mm,
-        arm_length_mm=robot.arm_length_mm,
-        disc_radius_mm=robot.disc_radius_mm,
-        swing_min_deg=math.degrees(robot.swing_min_rad),
-        swing_max_deg=math.degrees(robot.swing_max_rad),
-        clearance_mm=clearance_mm,
-    )
-
-
-def _floor_figures(plan: FloorPlan) -> FloorFigures:
-    """The floor's figures; the obstacle area is that within the floor, overlaps counted once."""
-    obstacle_mm2 = plan.obstacle_region().area
-    return FloorFigures(
-        area_m2=plan.floor.area / MM2_PER_M2,
-        source=plan.floor_source,
-        obstacle_area_m2=obstacle_mm2 / MM2_PER_M2,
-        obstacle_percent=100 * obstacle_mm2 / plan.floor.area,
-        free_area_m2=plan.free_region().area / MM2_PER_M2,
-        n_obstacles=len(plan.obstacles),
-    )
-
-
-def _pose_figures(found: Search, state: State) -> dict[str, Any]:
-    """A state in the drawing's axes."""
-    plan, lattice = found.plan, found.lattice
-    pose = lattice.pose(*state)
-    a1_deg = math.degrees(pose.a1_rad + plan.frame.turn_rad) % 360.0
-    return {
-        "xy_mm": _in_drawing_mm(plan, (pose.x_mm, pose.y_mm)),
-        "node": (state.iy, state.ix),
-        "a1_deg": a1_deg,
-        "a2_deg": math.degrees(pose.a2_rad),
-    }
-
-
-def _patch_figures(plan: FloorPlan, patch: Patch) -> PatchFigures:
-    """A patch with its label in the drawing's axes."""
-    return PatchFigures(
-        reason=patch.reason.value,
-        area_m2=patch.area_mm2 / MM2_PER_M2,
-        label_mm=_in_drawing_mm(plan, patch.label_mm),
-        narrow=patch.narrow,
-        blocker_handle=patch.blocker.handle if patch.blocker else "",
-        blocker_layer=patch.blocker.layer if patch.blocker else "",
     )
 
 

@@ -287,8 +287,8 @@ def test_the_note_gives_the_figures_of_the_report(tmp_path: Path) -> None:
 
 def test_names_in_the_note_cannot_give_orders_to_the_text_engine(tmp_path: Path) -> None:
     result = results.furnished_result()
-    robot = result.report.robot.model_copy(update={"name": "{\\H9;big}\n0\nEOF"})
-    report = result.report.model_copy(update={"robot": robot})
+    robot = replace(result.report.robot, name="{\\H9;big}\n0\nEOF")
+    report = replace(result.report, robot=robot)
     other = replace(result.robot, name="x\n  0\nEOF\n" + 300 * "y")
     odd = replace(result, report=report, search=replace(result.search, robot=other))
     document = written(odd, tmp_path / "a.dxf")

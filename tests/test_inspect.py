@@ -10,6 +10,7 @@ import pytest
 from satAOI_adapters import inspect_plan, inspect_write, read_plan
 from satAOI_adapters.dxf_read import ReadOptions
 from satAOI_adapters.dxf_read.inspection import Inspection, LayerFigures
+from satAOI_adapters.files import json_of
 from satAOI_adapters.layers import Certainty, Meaning
 from satAOI_geo import DrawingError, UnitError
 
@@ -157,7 +158,7 @@ def test_plans_are_numbered_with_their_corners(drawing: Path) -> None:
 
 def test_the_json_holds_the_same(drawing: Path) -> None:
     inspection = inspected(drawing)
-    data = json.loads(inspect_write.json_of(inspection))
+    data = json.loads(json_of(inspection))
     assert data["source"]["unit"] == "m"
     assert [layer["layer"] for layer in data["layers"]] == [
         layer.layer for layer in inspection.layers

@@ -1,11 +1,14 @@
 """The report as JSON and as lines."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from pydantic import TypeAdapter
 
 from satAOI_adapters import report_write
+from satAOI_adapters.files import json_of
 from satAOI_geo import InputError, Report
 from tests.results import furnished_result
 
@@ -13,27 +16,27 @@ REPORT = furnished_result().report
 
 
 def test_the_json_read_again_is_the_same_report() -> None:
-    assert Report.model_validate_json(report_write.json_of(REPORT)) == REPORT
+    assert TypeAdapter(Report).validate_json(json_of(REPORT)) == REPORT
 
 
 def test_the_json_names_its_schema_first() -> None:
-    keys = list(json.loads(report_write.json_of(REPORT)))
+    keys = list(json.loads(json_of(REPORT)))
     assert keys[0] == "schema"
-    assert json.loads(report_write.json_of(REPORT))["schema"] == "sataoi-report/1"
+    assert json.loads(json_of(REPORT))["schema"] == "sataoi-report/1"
 
 
 def test_the_file_holds_the_json(tmp_path: Path) -> None:
     file = tmp_path / "report.json"
     report_write.write(file, REPORT)
-    assert file.read_text(encoding="utf-8") == report_write.json_of(REPORT)
+    assert file.read_text(encoding="utf-8") == json_of(REPORT)
 
 
 def test_a_report_is_never_written_over_the_plan(tmp_path: Path) -> None:
     plan = tmp_path / "plan.dxf"
     plan.write_bytes(b"the plan")
-    source = REPORT.input.model_copy(update={"path": str(plan)})
+    source = replace(REPORT.input, path=str(plan))
     with pytest.raises(InputError, match="is an input"):
-        report_write.write(plan, REPORT.model_copy(update={"input": source}))
+        report_write.write(plan, replace(REPORT, input=source))
     assert plan.read_bytes() == b"the plan"
 
 

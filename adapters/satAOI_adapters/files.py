@@ -62,3 +62,14 @@ def refuse_unfit_target(path: Path, never_over: Iterable[Path] = ()) -> None:
 def _same_file(one: Path, other: Path) -> bool:
     """Whether two names lead to one file that exists."""
     return one.exists() and other.exists() and one.samefile(other)
+
+
+def json_of(figures: object) -> str:
+    """A dataclass as JSON, key by key: the same figures give the same text.
+
+    Floats stand with all their digits, so that reading them back gives the same numbers. What
+    builds the schema is imported here, since most runs write none.
+    """
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(type(figures)).dump_json(figures, indent=2).decode() + "\n"

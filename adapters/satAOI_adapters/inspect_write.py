@@ -1,9 +1,7 @@
 """An inspection as JSON for programs and as tables for people."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias
-
-from pydantic import TypeAdapter
+from typing import TYPE_CHECKING, TypeAlias
 
 from satAOI_adapters.dxf_read.inspection import Inspection as DxfInspection
 from satAOI_adapters.dxf_read.inspection import LayerFigures
@@ -15,12 +13,6 @@ if TYPE_CHECKING:
 Table: TypeAlias = Sequence[Sequence[str]]
 
 MM_PER_M = 1000.0
-
-
-def json_of(inspection: "DxfInspection | IfcInspection") -> str:
-    """The inspection as JSON."""
-    adapter: TypeAdapter[Any] = TypeAdapter(type(inspection))
-    return adapter.dump_json(inspection, indent=2).decode() + "\n"
 
 
 def tables_of(inspection: "DxfInspection | IfcInspection") -> list[Table]:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from satAOI_adapters.files import written_whole
+from satAOI_adapters.files import json_of, written_whole
 from satAOI_geo.reasons import SENTENCES, Reason
 from satAOI_geo.report import PatchFigures, Report
 
@@ -25,14 +25,6 @@ def write(path: Path, report: Report) -> None:
     """
     with written_whole(path, never_over=[Path(report.input.path)]) as stream:
         stream.write(json_of(report).encode())
-
-
-def json_of(report: Report) -> str:
-    """The report as JSON: the same run gives the same text, `timing_s` aside.
-
-    Floats stand with all their digits, so that reading them back gives the same numbers.
-    """
-    return report.model_dump_json(by_alias=True, indent=2) + "\n"
 
 
 def lines_of(report: Report) -> list[Line]:

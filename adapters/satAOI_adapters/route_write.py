@@ -2,14 +2,13 @@
 
 import math
 from collections import Counter
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Literal
 
-from pydantic import ConfigDict, Field
-
-from satAOI_adapters.files import written_whole
+from satAOI_adapters.files import json_of, written_whole
 from satAOI_geo.pipeline import Result
-from satAOI_geo.report import InputFigures, LatticeFigures, PoseFigures, RobotFigures, Section
+from satAOI_geo.report import InputFigures, LatticeFigures, PoseFigures, RobotFigures
 from satAOI_geo.route import MoveKind, Route
 from satAOI_geo.units import MM_PER_UNIT
 
@@ -17,6 +16,7 @@ Line = tuple[str, str]
 """A label and what is said under it."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
 class StateFigures(PoseFigures):
     """Where the robot stands, and the move that led there, null for the first.
 
@@ -27,18 +27,18 @@ class StateFigures(PoseFigures):
     move: MoveKind | None
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
 class GoalFigures(PoseFigures):
     """Where the robot stands last, and the point that its disc trowels there."""
 
     point_mm: tuple[float, float]
 
 
-class RouteFigures(Section):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RouteFigures:
     """A route; lengths and places in mm in the drawing's axes."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
-
-    schema_name: Literal["sataoi-route/1"] = Field(alias="schema")
+    schema: Literal["sataoi-route/1"] = "sataoi-route/1"
     input: InputFigures
     robot: RobotFigures
     lattice: LatticeFigures
@@ -63,7 +63,7 @@ def write(path: Path, result: Result, route: Route) -> None:
     figures = figures_of(result, route)
     inputs = [Path(figures.input.path)] if figures.input.path else []
     with written_whole(path, never_over=inputs) as stream:
-        stream.write((figures.model_dump_json(by_alias=True, indent=2) + "\n").encode())
+        stream.write(json_of(figures).encode())
 
 
 def figures_of(result: Result, route: Route) -> RouteFigures:
@@ -72,16 +72,15 @@ def figures_of(result: Result, route: Route) -> RouteFigures:
     poses = _in_drawing(result, route)
     x_mm, y_mm = result.plan.frame.to_drawing_mm(route.to_mm).tolist()
     return RouteFigures(
-        schema="sataoi-route/1",
         input=report.input,
         robot=report.robot,
         lattice=report.lattice,
         start=poses[0],
-        goal=GoalFigures(**dict(poses[-1]), point_mm=(x_mm, y_mm)),
+        goal=GoalFigures(**asdict(poses[-1]), point_mm=(x_mm, y_mm)),
         length_mm=route.length_mm,
         n_moves=n_moves(route),
         states=[
-            StateFigures(**dict(pose), move=move)
+            StateFigures(**asdict(pose), move=move)
             for pose, move in zip(poses, [None, *route.moves()], strict=True)
         ],
     )

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
     from satAOI_geo.plan import Finding
-    from satAOI_geo.report import FindingFigures
 
 TOLD_OF_A_SORT = 3
 """Findings of one sort told in full; a page of them would hide the figures."""
@@ -44,7 +43,7 @@ def _say(word: str, style: str, message: str) -> None:
     console.print(" ".join(message.split()))
 
 
-def say_findings(findings: Iterable["Finding | FindingFigures"]) -> None:
+def say_findings(findings: Iterable["Finding"]) -> None:
     """The findings sort by sort, the first few of each in full and the number of the rest."""
     of_a_sort = sorted(findings, key=lambda finding: finding.code)
     for code, group in groupby(of_a_sort, key=lambda finding: finding.code):
@@ -55,7 +54,7 @@ def say_findings(findings: Iterable["Finding | FindingFigures"]) -> None:
             say_note(f"and {len(same) - TOLD_OF_A_SORT} more of '{code}'; --report lists all")
 
 
-def sentence_of(finding: "Finding | FindingFigures") -> str:
+def sentence_of(finding: "Finding") -> str:
     """What was found, where, and what to do about it."""
     where = []
     if finding.layer:

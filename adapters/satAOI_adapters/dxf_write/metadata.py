@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping
+from dataclasses import asdict, replace
 from pathlib import PurePath
 from typing import Final, TypeAlias
 
@@ -18,8 +19,8 @@ SCHEMA: Final = "sataoi-dxf/1"
 STRING_LIMIT: Final = 250
 """Characters in one string: DXF allows 255 bytes, and some readers stop at a longer one."""
 
-SETTINGS: Final = {"input", "robot", "lattice", "floor", "start", "aoi"}
-"""Sections of the report that go into the drawing."""
+SETTINGS: Final = {"robot", "lattice", "floor", "start", "aoi"}
+"""Sections of the report that go into the drawing besides the input."""
 
 Facts: TypeAlias = Mapping[str, str | int | float]
 
@@ -50,15 +51,17 @@ def record_run(document: Drawing, result: Result) -> None:
 
 
 def _settings(result: Result) -> dict[str, object]:
-    figures = result.report.model_dump(mode="json", include=SETTINGS)
-    figures["input"]["path"] = PurePath(result.report.input.path).name
-    frame = result.plan.frame
-    figures["frame"] = {
-        "origin_mm": frame.origin_mm,
-        "turn_rad": frame.turn_rad,
-        "mm_per_unit": frame.mm_per_unit,
+    report, frame = result.report, result.plan.frame
+    name = PurePath(report.input.path).name
+    return {
+        **{key: value for key, value in asdict(report).items() if key in SETTINGS},
+        "input": asdict(replace(report.input, path=name)),
+        "frame": {
+            "origin_mm": frame.origin_mm,
+            "turn_rad": frame.turn_rad,
+            "mm_per_unit": frame.mm_per_unit,
+        },
     }
-    return figures
 
 
 def _tags(facts: Facts) -> Iterator[tuple[int, str | int | float]]:
