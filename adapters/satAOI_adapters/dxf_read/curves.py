@@ -17,19 +17,21 @@ by *tangents*, outside it. Both keep within `SAGITTA_MM` of the curve:
 """
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 import numpy as np
 
 from satAOI_adapters.dxf_read import limits
-from satAOI_geo.plan import FloatArray
+from satAOI_geo.plan import FloatArray, IntArray
 
 Point: TypeAlias = tuple[float, float]
 
 SAGITTA_MM: Final = 0.01
 """Farthest a polyline may be from the curve it stands for: a hundredth of a drawn line's width."""
+
+STRAIGHT_MM: Final = 1e-5
+"""A spline's piece as straight as that need not be halved to bend to one side only."""
 
 LARGEST_STEP_RAD: Final = math.pi / 8
 """A full turn has at least 16 pieces, however small it is."""
@@ -138,6 +140,12 @@ class Arc:
         turns_rad = np.asarray(np.arange(0.5, steps) * (self.sweep_rad / steps))
         return [self.start, *self._points(turns_rad, 1.0), self.end]
 
+    def rough(self) -> list[Point]:
+        """Start, corners on the arc, a sixteenth of a turn or less apart, end."""
+        steps = math.ceil(self.sweep_rad / LARGEST_STEP_RAD)
+        turns_rad = np.asarray(np.arange(1.0, steps) * (self.sweep_rad / steps))
+        return [self.start, *self._points(turns_rad, 1.0), self.end]
+
     def _points(self, turns_rad: FloatArray, outwards: float) -> list[Point]:
         cos, sin = np.cos(turns_rad) * outwards, np.sin(turns_rad) * outwards
         x_mm = self.centre[0] + self.u[0] * cos + self.v[0] * sin
@@ -171,19 +179,31 @@ class Spline:
 
     def chords(self) -> list[Point]:
         """Start, corners on the spline, end."""
-        corners = [(float(hull[-1, 0]), float(hull[-1, 1])) for hull in self.hulls()]
-        return [self.start, *corners[:-1], self.end]
+        corners = self.hulls()[:-1, -1].tolist()
+        return [self.start, *((x, y) for x, y in corners), self.end]
 
-    def hulls(self) -> list[FloatArray]:
-        """Control points, shape (n, 2), of short pieces: each piece lies in their convex hull.
+    def hulls(self) -> FloatArray:
+        """Control points of short pieces, shape (pieces, degree + 1, 2).
 
-        No control point is farther than `SAGITTA_MM` from the piece's chord.
+        Each piece lies in the convex hull of its points, none of which is farther than
+        `SAGITTA_MM` from the piece's chord, and bends to one side only.
         """
-        hulls = [hull for bezier in self.beziers for hull in _flat_pieces(bezier)]
-        limits.hold(
-            "straight pieces for one curve", len(hulls), limits.MAX_CURVE_STEPS, "check the unit"
-        )
-        return hulls
+        return _flat_pieces(np.stack(self.beziers))
+
+    def beside(self, *, left: bool) -> list[Point]:
+        """Corners after the start of a line that has the spline on its other side, and its end.
+
+        Args:
+            left: Whether the line keeps to the left of the spline, or to its right.
+        """
+        hulls = self.hulls()
+        corners: list[Point] = []
+        for hull, turn in zip(hulls.tolist(), _turns(hulls).tolist(), strict=True):
+            # a piece that turns left has its control points on its right
+            taken = hull[-1:] if (turn >= 0) == left else hull[1:]
+            corners.extend((x, y) for x, y in taken)
+        corners[-1] = self.end
+        return corners
 
 
 Piece: TypeAlias = Line | Arc | Spline
@@ -210,6 +230,13 @@ class Path:
     def is_straight(self) -> bool:
         """Whether all its pieces are lines."""
         return all(isinstance(piece, Line) for piece in self.pieces)
+
+    def rough(self) -> list[Point]:
+        """Its corners, curves by few: enough to tell what lies near what."""
+        points = [self.start]
+        for piece in self.pieces:
+            points.extend(piece.rough()[1:] if isinstance(piece, Arc) else piece.spots()[1:])
+        return points
 
     def chords(self) -> list[Point]:
         """Its corners, curves by chords; a closed path repeats the first one at the end."""
@@ -292,38 +319,65 @@ def _blossom(
     return np.asarray(row[0], dtype=np.float64)
 
 
-def _flat_pieces(bezier: FloatArray) -> Iterator[FloatArray]:
-    """Halve a Bézier piece until its control points keep to the chord."""
-    pending = [bezier]
-    while pending:
-        piece = pending.pop()
-        hull = piece[:, :2] / piece[:, 2:]
-        if _is_flat(hull):
-            yield hull
-            continue
-        limits.hold("halvings of one curve", len(pending), limits.MAX_CURVE_STEPS, "check the unit")
-        first, second = _halves(piece)
-        pending.extend((second, first))
+def _flat_pieces(beziers: FloatArray) -> FloatArray:
+    """Halve Bézier pieces until their control points keep to the chord.
+
+    Args:
+        beziers: Control points (x·w, y·w, w), shape (pieces, degree + 1, 3).
+
+    Returns:
+        Control points (x, y) in the order of travel, shape (more pieces, degree + 1, 2).
+    """
+    pending, places, step = beziers, np.arange(float(len(beziers))), 1.0
+    flat_hulls: list[FloatArray] = []
+    flat_places: list[FloatArray] = []
+    n_pieces = len(beziers)
+    while len(pending):
+        hulls = pending[..., :2] / pending[..., 2:]
+        off_mm = _off_chords(hulls)
+        is_flat = (off_mm <= SAGITTA_MM) & ((off_mm <= STRAIGHT_MM) | (_turns(hulls) != 0))
+        flat_hulls.append(hulls[is_flat])
+        flat_places.append(places[is_flat])
+        pending, places, step = _halves(pending[~is_flat]), places[~is_flat], step / 2
+        # the second half of a piece comes half of its share of the way later
+        places = np.concatenate((places, places + step))
+        n_pieces += len(pending) // 2
+        limits.hold(
+            "straight pieces for one curve", n_pieces, limits.MAX_CURVE_STEPS, "check the unit"
+        )
+    order = np.argsort(np.concatenate(flat_places))
+    return np.asarray(np.concatenate(flat_hulls)[order])
 
 
-def _is_flat(hull: FloatArray) -> bool:
-    """Whether all control points are within `SAGITTA_MM` of the segment between the ends."""
-    chord_mm = hull[-1] - hull[0]
-    from_start_mm = hull - hull[0]
-    length2_mm2 = float(chord_mm @ chord_mm)
-    along = (from_start_mm @ chord_mm) / length2_mm2 if length2_mm2 else np.zeros(len(hull))
-    nearest_mm = np.clip(along, 0.0, 1.0)[:, np.newaxis] * chord_mm
-    return bool((np.hypot(*(from_start_mm - nearest_mm).T) <= SAGITTA_MM).all())
+def _off_chords(hulls: FloatArray) -> FloatArray:
+    """How far the control points of each piece are from the segment between its ends."""
+    chords_mm = hulls[:, -1:] - hulls[:, :1]
+    from_start_mm = hulls - hulls[:, :1]
+    length2_mm2 = (chords_mm**2).sum(axis=-1)
+    along_mm2 = (from_start_mm * chords_mm).sum(axis=-1)
+    shares = np.divide(along_mm2, length2_mm2, out=np.zeros_like(along_mm2), where=length2_mm2 > 0)
+    nearest_mm = np.clip(shares, 0.0, 1.0)[..., np.newaxis] * chords_mm
+    off_mm = np.hypot(*np.moveaxis(from_start_mm - nearest_mm, -1, 0))
+    return np.asarray(off_mm.max(axis=-1))
 
 
-def _halves(piece: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """A Bézier piece cut at its middle parameter (de Casteljau)."""
-    rows = [piece]
-    while len(rows[-1]) > 1:
-        rows.append((rows[-1][:-1] + rows[-1][1:]) / 2)
-    first = np.array([row[0] for row in rows])
-    second = np.array([row[-1] for row in reversed(rows)])
-    return first, second
+def _turns(hulls: FloatArray) -> IntArray:
+    """To which side each piece turns: 1 to the left, -1 to the right, 0 to both or to neither."""
+    sides_mm = np.diff(hulls, axis=1)
+    before, after = sides_mm[:, :-1], sides_mm[:, 1:]
+    crosses = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
+    turns_left, turns_right = (crosses > 0).any(axis=-1), (crosses < 0).any(axis=-1)
+    return np.asarray(turns_left.astype(np.int64) - turns_right)
+
+
+def _halves(beziers: FloatArray) -> FloatArray:
+    """Bézier pieces cut at the middle parameter (de Casteljau): first halves, then second ones."""
+    rows = [beziers]
+    while rows[-1].shape[1] > 1:
+        rows.append((rows[-1][:, :-1] + rows[-1][:, 1:]) / 2)
+    first = np.stack([row[:, 0] for row in rows], axis=1)
+    second = np.stack([row[:, -1] for row in reversed(rows)], axis=1)
+    return np.concatenate((first, second))
 
 
 def _radii_at(u: Point, v: Point, turn_rad: float) -> tuple[Point, Point]:

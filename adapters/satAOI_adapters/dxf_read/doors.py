@@ -6,8 +6,9 @@ And some offices draw whole partitions on the layer of their doors; these are wa
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -87,28 +88,6 @@ def partitions(
     ]
 
 
-@dataclass(frozen=True, slots=True)
-class Door:
-    """A door that is drawn open.
-
-    Attributes:
-        swing: The arc of its tip.
-        pieces: Identities of its arc and its leaves among the pieces that are drawn.
-    """
-
-    swing: Arc
-    pieces: frozenset[int]
-
-    def draws(self, path: Path) -> bool:
-        """Whether a path is the door's arc or leaf, and nothing beyond the door's circle."""
-        reach_mm = math.hypot(*self.swing.u) + LEAF_SLACK_MM
-        return any(id(piece) in self.pieces for piece in path.pieces) and all(
-            math.dist(spot, self.swing.centre) <= reach_mm
-            for piece in path.pieces
-            for spot in (piece.start, piece.end)
-        )
-
-
 def without_swings(features: Sequence[Feature]) -> tuple[list[Feature], int]:
     """Features less the doors drawn among them, and how many doors these are.
 
@@ -132,18 +111,41 @@ def without_swings(features: Sequence[Feature]) -> tuple[list[Feature], int]:
     if not arcs or not lines:
         return list(features), 0
     tree = cKDTree([end for line in lines for end in (line.start, line.end)])
-    doors: list[Door] = []
+    n_doors = 0
+    doors_of: defaultdict[int, list[Arc]] = defaultdict(list)
     for arc in arcs:
         near = [lines[i // 2] for i in tree.query_ball_point(arc.centre, LEAF_SLACK_MM)]
         leaves = [line for line in near if _is_leaf(line, arc)]
-        if leaves:
-            doors.append(Door(arc, frozenset(id(piece) for piece in (arc, *leaves))))
+        n_doors += bool(leaves)
+        for piece in (arc, *leaves) if leaves else ():
+            doors_of[id(piece)].append(arc)
     kept = []
     for feature in features:
-        paths = tuple(path for path in feature.paths if not any(d.draws(path) for d in doors))
+        paths = tuple(path for path in feature.paths if not _draws_door(path, doors_of))
         if paths:
             kept.append(replace(feature, paths=paths))
-    return kept, len(doors)
+    return kept, n_doors
+
+
+def _draws_door(path: Path, doors_of: Mapping[int, Sequence[Arc]]) -> bool:
+    """Whether a path is a door's arc or leaf, and shows nothing beyond the door's circle.
+
+    Args:
+        path: What is drawn.
+        doors_of: The arcs of the doors to which a piece belongs, by the piece's identity.
+    """
+    swings = [swing for piece in path.pieces for swing in doors_of.get(id(piece), ())]
+    return any(_holds(swing, path) for swing in swings)
+
+
+def _holds(swing: Arc, path: Path) -> bool:
+    """Whether a path stays within a door's circle."""
+    reach_mm = math.hypot(*swing.u) + LEAF_SLACK_MM
+    return all(
+        math.dist(spot, swing.centre) <= reach_mm
+        for piece in path.pieces
+        for spot in (piece.start, piece.end)
+    )
 
 
 def _may_be_swing(arc: Arc) -> bool:
@@ -193,12 +195,12 @@ def spans(doors: Sequence[Feature], walls: Sequence[BaseGeometry]) -> list[LineS
 
 def _spanning(lines: Sequence[LineString], walls: Sequence[BaseGeometry]) -> npt.NDArray[np.bool_]:
     """Which lines end at walls on both sides."""
-    known = shapely.union_all(walls)
-    shapely.prepare(known)
-    starts, ends = shapely.get_point(lines, 0), shapely.get_point(lines, -1)
-    return np.asarray(
-        shapely.dwithin(starts, known, JAMB_MM) & shapely.dwithin(ends, known, JAMB_MM)
-    )
+    known = shapely.STRtree(walls)
+    at_walls = np.ones(len(lines), dtype=bool)
+    for end in (0, -1):
+        near, _ = known.query(shapely.get_point(lines, end), predicate="dwithin", distance=JAMB_MM)
+        at_walls &= np.isin(np.arange(len(lines)), near)
+    return at_walls
 
 
 def _in_corners(

@@ -18,8 +18,8 @@ from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.entities import LOCAL_DIGITS
-from satAOI_adapters.dxf_read.linework import is_thin
-from satAOI_adapters.dxf_read.shapes import SAME_MM, rounded, tidy
+from satAOI_adapters.dxf_read.linework import WALL_MM
+from satAOI_adapters.dxf_read.shapes import SAME_MM, GeometryArray, is_thin, rounded, tidy
 from satAOI_geo.plan import FloatArray, Region, polygons_in
 
 OPENING_MM: Final = 2500.0
@@ -55,11 +55,15 @@ class Mesh:
         points: Shape (n, 2).
         neighbours: Triangle beyond each side, -1 for none, shape (triangles, 3).
         sides: Corners of each triangle's three sides, shape (triangles, 3, 2).
+        areas_mm2: Of the triangles.
+        centres: Their centroids, as points in a tree.
     """
 
     points: FloatArray
     neighbours: npt.NDArray[np.int32]
     sides: npt.NDArray[np.int32]
+    areas_mm2: FloatArray
+    centres: shapely.STRtree
 
     @classmethod
     def over(cls, points: FloatArray) -> "Mesh":
@@ -68,7 +72,11 @@ class Mesh:
         corners = delaunay.simplices
         # side k lies opposite corner k, as neighbour k does
         sides = np.stack((corners[:, (1, 2)], corners[:, (2, 0)], corners[:, (0, 1)]), axis=1)
-        return cls(points, delaunay.neighbors, sides)
+        first, second, third = np.moveaxis(points[corners], 1, 0)
+        along, across = second - first, third - first
+        areas_mm2 = np.abs(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]) / 2
+        centres = shapely.STRtree(shapely.points((first + second + third) / 3))
+        return cls(points, delaunay.neighbors, sides, areas_mm2, centres)
 
     def outside(self, opening_mm: float) -> npt.NDArray[np.bool_]:
         """The triangles that are reached from far away over sides longer than an opening."""
@@ -85,7 +93,7 @@ class Mesh:
         _, component = connected_components(links, directed=False)
         return np.asarray(component[:n] == component[n])
 
-    def rim(self, outside: npt.NDArray[np.bool_]) -> npt.NDArray[np.object_]:
+    def rim(self, outside: npt.NDArray[np.bool_]) -> GeometryArray:
         """The sides between triangles outside and inside, as lines."""
         beyond_is_outside = (self.neighbours < 0) | outside[self.neighbours]
         triangles, corners = np.nonzero(~outside[:, np.newaxis] & beyond_is_outside)
@@ -95,15 +103,10 @@ class Mesh:
         self, faces: Sequence[Polygon], outside: npt.NDArray[np.bool_]
     ) -> npt.NDArray[np.float64]:
         """Which share of each face stays dry, judged by the triangles centred in it."""
-        corners = self.points[self.sides[:, :, 0]]
-        first, second, third = np.moveaxis(corners, 1, 0)
-        along, across = second - first, third - first
-        areas_mm2 = np.abs(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]) / 2
-        centres = shapely.STRtree(shapely.points(corners.mean(axis=1)))
-        owners, triangles = centres.query(faces, predicate="contains")
+        owners, triangles = self.centres.query(faces, predicate="contains")
         n = len(faces)
-        total_mm2 = np.bincount(owners, areas_mm2[triangles], n)
-        dry_mm2 = np.bincount(owners, (areas_mm2 * ~outside)[triangles], n)
+        total_mm2 = np.bincount(owners, self.areas_mm2[triangles], n)
+        dry_mm2 = np.bincount(owners, (self.areas_mm2 * ~outside)[triangles], n)
         return np.divide(dry_mm2, total_mm2, out=np.zeros(n), where=total_mm2 > 0)
 
 
@@ -129,8 +132,7 @@ def enclosed(bounds: Sequence[BaseGeometry]) -> Region:
     mesh = Mesh.over(samples)
     found: BaseGeometry = Polygon()
     for opening_mm in OPENING_STEPS_MM:
-        faces = _dry_faces(mesh, shapely.union_all([walls, found.boundary]), opening_mm)
-        found = shapely.union_all([found, *faces])
+        found = shapely.union_all([found, *_dry_faces(mesh, walls, found, opening_mm)])
     filled = shapely.union_all([bound for bound in bounds if isinstance(bound, Polygon)])
     return _with_rooms(found, filled)
 
@@ -151,15 +153,21 @@ def _samples(walls: BaseGeometry) -> FloatArray:
     return np.unique(np.round(np.vstack((between, ends)), LOCAL_DIGITS), axis=0)
 
 
-def _dry_faces(mesh: Mesh, walls: BaseGeometry, opening_mm: float) -> list[Polygon]:
-    """The faces between walls that openings of this width do not connect with the outside."""
+def _dry_faces(
+    mesh: Mesh, walls: BaseGeometry, known: BaseGeometry, opening_mm: float
+) -> list[Polygon]:
+    """The faces between walls that openings of this width do not connect with the outside.
+
+    Those within what is known to be enclosed already are of no interest.
+    """
     outside = mesh.outside(opening_mm)
     rim = mesh.rim(outside)
-    shapely.prepare(walls)
+    bounds = shapely.union_all([*_beyond(known, shapely.get_parts(walls)), known.boundary])
+    shapely.prepare(bounds)
     middles = shapely.line_interpolate_point(rim, 0.5, normalized=True)
-    seals = rim[~shapely.dwithin(middles, walls, ON_LINE_MM)]
+    seals = _beyond(known, rim[~shapely.dwithin(bounds, middles, ON_LINE_MM)])
     # snapped to the grid, since samples lie on oblique walls only up to rounding
-    noded = shapely.union_all([walls, *seals], grid_size=SAME_MM)
+    noded = shapely.union_all([bounds, *seals], grid_size=SAME_MM)
     cut = np.array(shapely.polygonize([noded]).geoms)
     faces = rounded(cut[shapely.area(cut) > CRUMB_MM2])
     if not faces:
@@ -171,6 +179,12 @@ def _dry_faces(mesh: Mesh, walls: BaseGeometry, opening_mm: float) -> list[Polyg
         for face, share in zip(faces, dry, strict=True)
         if share > 0.5 and not _is_niche(face, tree)
     ]
+
+
+def _beyond(known: BaseGeometry, lines: GeometryArray) -> GeometryArray:
+    """The lines that do not lie wholly inside what is known."""
+    shapely.prepare(known)
+    return np.asarray(lines[~shapely.contains_properly(known, lines)])
 
 
 def _is_niche(face: Polygon, seals: shapely.STRtree) -> bool:
@@ -190,6 +204,7 @@ def _with_rooms(found: BaseGeometry, filled: BaseGeometry) -> Region:
     rooms = [
         part
         for part in parts
-        if not all(is_thin(space) for space in polygons_in([part.difference(filled)]))
+        if not all(is_thin(space, WALL_MM) for space in polygons_in([part.difference(filled)]))
     ]
-    return tidy(shapely.union_all(rooms))
+    # in one order of corners, whatever the order in which the walls were drawn
+    return tidy(shapely.normalize(shapely.union_all(rooms)))

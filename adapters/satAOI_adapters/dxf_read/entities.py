@@ -7,8 +7,9 @@ its own axes (OCS), the blocks around it, the unit and the origin are one matrix
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
-from typing import Final, TypeAlias, TypeVar
+from typing import Final, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 from ezdxf.entities import (
@@ -101,8 +102,7 @@ class Placement:
     @classmethod
     def of(cls, placed: Placed, mm_per_unit: float, origin_mm: Point) -> "Placement":
         """The map for an entity whose coordinates are in world or block axes."""
-        to_local = Matrix44.scale(mm_per_unit) * Matrix44.translate(-origin_mm[0], -origin_mm[1], 0)
-        return cls(placed.matrix * to_local)
+        return cls(placed.matrix * _to_local(mm_per_unit, origin_mm))
 
     def in_axes_of(self, entity: DXFGraphic) -> "Placement":
         """The map for coordinates in the entity's own axes (OCS)."""
@@ -131,6 +131,12 @@ class Placement:
         """The greatest stretch in the plane."""
         (a, b), (c, d) = self.vector(1, 0), self.vector(0, 1)
         return float(np.linalg.norm(((a, c), (b, d)), 2))
+
+
+@lru_cache(maxsize=1)
+def _to_local(mm_per_unit: float, origin_mm: Point) -> Matrix44:
+    """The map from the drawing's axes to the plan's frame, one for all entities of a reading."""
+    return Matrix44.scale(mm_per_unit) * Matrix44.translate(-origin_mm[0], -origin_mm[1], 0)
 
 
 def features_of(placed: Placed, mm_per_unit: float, origin_mm: Point) -> list[Feature]:
@@ -205,7 +211,7 @@ def _lwpolyline(placed: Placed, placement: Placement) -> Iterator[Feature]:
     width = entity.dxf.const_width if entity.dxf.hasattr("const_width") else None
     corners = [
         Corner(x, y, bulge, *((width, width) if width is not None else (first, last)))
-        for x, y, first, last, bulge in entity.get_points("xyseb")
+        for x, y, first, last, bulge in entity
     ]
     own = placement.in_axes_of(entity)
     yield from _polyline_features(placed, own, corners, elevation, is_closed=entity.closed)
@@ -276,8 +282,7 @@ def _mline(placed: Placed, placement: Placement) -> Iterator[Feature]:
         yield _area(placed, placement.points((right, next_right, next_left, left)))
 
 
-@dataclass(frozen=True, slots=True)
-class Corner:
+class Corner(NamedTuple):
     """A vertex of a polyline in its own axes, with what belongs to the piece after it."""
 
     x: float

@@ -11,10 +11,10 @@ from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.enclosure import OPENING_MM, enclosed
 from satAOI_adapters.dxf_read.entities import Feature
-from satAOI_adapters.dxf_read.linework import Network, is_thin, network
+from satAOI_adapters.dxf_read.linework import Network, network
 from satAOI_adapters.dxf_read.obstacles import outlines_of
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
-from satAOI_adapters.dxf_read.shapes import even_odd, middle_line, room, slivers, tidy
+from satAOI_adapters.dxf_read.shapes import even_odd, is_thin, middle_line, room, slivers, tidy
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_geo.errors import DrawingError, EmptyPlanError
 from satAOI_geo.plan import (

@@ -11,16 +11,16 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Final
 
+import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 from shapely.geometry import LineString, Polygon
 from shapely.geometry import Point as Spot
-from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
-from satAOI_adapters.dxf_read.shapes import SAME_MM, rounded
-from satAOI_geo.plan import polygons_in
+from satAOI_adapters.dxf_read.shapes import SAME_MM, GeometryArray, rounded
+from satAOI_geo.plan import IntArray, polygons_in
 
 NEAR_MISS_MM: Final = 50.0
 """Ends this close were perhaps meant to meet: reported, left open."""
@@ -81,18 +81,22 @@ class Network:
         return rounded(polygons_in(shapely.polygonize([noded]).geoms))
 
 
-def network(lines: Sequence[LineString], gap_mm: float = CLOSE_GAPS_MM) -> Network:
+def network(lines: Sequence[LineString] | GeometryArray, gap_mm: float = CLOSE_GAPS_MM) -> Network:
     """Join line ends that are at most `gap_mm` from another end or another line."""
-    lines = [line for line in map(shapely.remove_repeated_points, lines) if line.length]
+    lines = [line for line in shapely.remove_repeated_points(lines) if line.length]
     if not lines:
         return Network((), (), 0, ())
-    tree = shapely.STRtree(lines)
+    corners = [_corners(line) for line in lines]
+    ends = _ends(corners)
+    within_mm = max(gap_mm, NEAR_MISS_MM)
     joints: list[LineString] = []
     loose: list[tuple[Point, Point]] = []
     gaps: list[Gap] = []
     n_joined = 0
-    for owner, end, outwards in _ends(lines):
-        foot = _nearest(tree, lines, owner, end, max(gap_mm, NEAR_MISS_MM))
+    for (owner, end, outwards), around in zip(ends, _around(ends, lines, within_mm), strict=True):
+        # lines with a corner here lie under the owner: nothing goes on from its end
+        near = [lines[i] for i in around if end not in corners[i]]
+        foot = _nearest(near, end, _other_end(corners[owner], end, within_mm))
         width_mm = math.inf if foot is None else math.dist(end, foot)
         if foot is not None and width_mm <= gap_mm:
             joints.append(_joint(end, foot, outwards))
@@ -151,25 +155,26 @@ def _is_parallel(side: LineString, along: Point) -> bool:
     return abs(way[0] * along[1] - way[1] * along[0]) <= PARALLEL
 
 
-def is_thin(polygon: BaseGeometry, width_mm: float = WALL_MM) -> bool:
-    """Whether no disc of this diameter fits into a region."""
-    return bool(polygon.buffer(-width_mm / 2).is_empty)
+def _corners(line: LineString) -> list[Point]:
+    return [(x, y) for x, y in shapely.get_coordinates(line).tolist()]
 
 
-def _ends(lines: Sequence[LineString]) -> list[tuple[int, Point, Point]]:
+def _ends(lines: Sequence[Sequence[Point]]) -> list[tuple[int, Point, Point]]:
     """The ends from which nothing goes on: owner, place and direction out of the line.
 
     Lines drawn twice, or one over the other, count once.
+
+    Args:
+        lines: The corners of each line.
     """
     ways: defaultdict[Point, list[Point]] = defaultdict(list)
     for line in lines:
-        for start, end in pairwise(line.coords):
+        for start, end in pairwise(line):
             way = _direction(start, end)
             ways[start].append(way)
             ways[end].append((-way[0], -way[1]))
     found: dict[Point, tuple[int, Point, Point]] = {}
-    for owner, line in enumerate(lines):
-        points = line.coords
+    for owner, points in enumerate(lines):
         for end, before in ((points[0], points[1]), (points[-1], points[-2])):
             out = _direction(before, end)
             if all(_leads_back(way, out) for way in ways[end]):
@@ -183,25 +188,36 @@ def _leads_back(way: Point, out: Point) -> bool:
     return along < 0 and abs(way[0] * out[1] - way[1] * out[0]) <= OVER_EACH_OTHER
 
 
-def _nearest(
-    tree: shapely.STRtree, lines: Sequence[LineString], owner: int, end: Point, within_mm: float
-) -> Point | None:
-    """The point of the other lines nearest to an end; a corner there if one is hardly farther."""
-    spot = Spot(end)
-    around = tree.query(spot, predicate="dwithin", distance=within_mm)
-    # lines with a corner here lie under the owner: nothing goes on from its end
-    near = [i for i in around if end not in lines[i].coords]
-    own = lines[owner].coords
-    other_end = own[-1] if own[0] == end else own[0]
-    feet = (
-        [other_end] if math.dist(other_end, end) <= min(within_mm, lines[owner].length / 2) else []
-    )
+def _around(
+    ends: Sequence[tuple[int, Point, Point]], lines: Sequence[LineString], within_mm: float
+) -> list[IntArray]:
+    """For each end, the numbers of the lines within a distance of it."""
+    if not ends:
+        return []
+    spots = shapely.points([end for _, end, _ in ends])
+    of_end, near = shapely.STRtree(lines).query(spots, predicate="dwithin", distance=within_mm)
+    return np.split(near, np.searchsorted(of_end, np.arange(1, len(ends))))
+
+
+def _other_end(own: Sequence[Point], end: Point, within_mm: float) -> list[Point]:
+    """The other end of a line if it is near, and the line leads there in a bow."""
+    other = own[-1] if own[0] == end else own[0]
+    length_mm = sum(math.dist(*side) for side in pairwise(own))
+    return [other] if math.dist(other, end) <= min(within_mm, length_mm / 2) else []
+
+
+def _nearest(near: Sequence[LineString], end: Point, feet: list[Point]) -> Point | None:
+    """The point nearest to an end, of lines near it and of other feet.
+
+    A corner of a line counts if it is hardly farther than the line.
+    """
     if near:
-        line = min((lines[i] for i in near), key=spot.distance)
+        spot = Spot(end)
+        line = min(near, key=spot.distance)
         on_line = line.interpolate(line.project(spot))
         corner = min(line.coords, key=lambda corner: math.dist(corner, end))
         is_corner = math.dist(corner, end) <= spot.distance(on_line) + CLOSE_GAPS_MM
-        feet.append(corner if is_corner else (on_line.x, on_line.y))
+        feet = [*feet, corner if is_corner else (on_line.x, on_line.y)]
     return min(feet, key=lambda foot: math.dist(foot, end), default=None)
 
 

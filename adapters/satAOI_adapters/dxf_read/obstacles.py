@@ -13,7 +13,6 @@ from satAOI_adapters.dxf_read.entities import Feature
 from satAOI_adapters.dxf_read.linework import (
     WALL_MM,
     Network,
-    is_thin,
     network,
     with_wall_ends,
     with_wall_ends_at,
@@ -22,7 +21,9 @@ from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.shapes import (
     band,
     even_odd,
-    middle_line,
+    is_thin,
+    is_wide,
+    middle_lines,
     rounded,
     shapes_of,
     slivers,
@@ -90,19 +91,22 @@ def walls(
             obstacles.extend(_obstacles(area_of(feature), Kind.WALL, feature))
             continue
         for path in feature.paths:
-            shapes = shapes_of(path) if path.closed else []
+            is_narrow = path.closed and not is_wide(path, WALL_MM)
+            shapes = shapes_of(path) if is_narrow else []
             if shapes and all(_is_wall_thick(shape) for shape in shapes):
                 obstacles.extend(_obstacles(shapes, Kind.WALL, feature))
             else:
                 wide[feature.placed.layer] += path.closed
                 lines.append((path, feature))
+    if not lines:
+        return Standing(tuple(obstacles))
     outlines = outlines_of([*obstacles, *columns])
-    drawn_lines = [middle_line(path) for path, _ in lines]
+    drawn_lines = middle_lines(path for path, _ in lines)
     joined = with_wall_ends(network([*drawn_lines, *outlines], terms.gap_mm))
     if floor_edges:
         at_edges = with_wall_ends_at(joined, floor_edges).lines
         joined = replace(joined, lines=network(at_edges, terms.gap_mm).lines)
-    inside = _insides(joined.faces(), lines, obstacles) if lines else []
+    inside = _insides(joined.faces(), lines, [*obstacles, *columns])
     drawn = [o for path, feature in lines for o in _obstacles(traces(path), Kind.WALL, feature)]
     findings = (*_wide_outlines(wide), *_filled(inside), *_gaps("wall", joined, terms))
     return Standing((*obstacles, *drawn, *inside), findings)
@@ -118,19 +122,22 @@ def area_of(feature: Feature) -> list[Shape]:
 
 def _loops(layer: str, paths: Sequence[tuple[Path, Feature]], kind: Kind, terms: Terms) -> Standing:
     """Loose lines of one layer: what they enclose is solid, the rest are lines."""
-    joined = network([middle_line(path) for path, _ in paths], terms.gap_mm)
+    lines = middle_lines(path for path, _ in paths)
+    joined = network(lines, terms.gap_mm)
     faces = shapely.union_all(joined.faces())
+    shapely.prepare(faces)
     # curves bulge out of the polygons that their chords enclose
-    bulges = [s for path, _ in paths for s in slivers(path) if s.intersects(faces)]
+    bulges = [s for path, _ in paths for s in slivers(path) if faces.intersects(s)]
     enclosed = rounded(polygons_in([shapely.union_all([faces, *bulges])]))
-    tree = shapely.STRtree([middle_line(path) for path, _ in paths])
+    nearest = shapely.STRtree(lines).nearest(enclosed)
     obstacles = [
-        Obstacle(Polygon(face.exterior), kind, layer, paths[tree.nearest(face)][1].placed.handle)
-        for face in enclosed
+        Obstacle(Polygon(face.exterior), kind, layer, paths[i][1].placed.handle)
+        for face, i in zip(enclosed, nearest, strict=True)
     ]
     grown = shapely.union_all(enclosed).buffer(COVERED_MM)
-    for path, feature in paths:
-        if not grown.covers(middle_line(path)):
+    shapely.prepare(grown)
+    for (path, feature), is_covered in zip(paths, shapely.covers(grown, lines), strict=True):
+        if not is_covered:
             obstacles.extend(_obstacles(traces(path), kind, feature))
     return Standing(tuple(obstacles), _gaps(layer, joined, terms))
 
@@ -138,26 +145,30 @@ def _loops(layer: str, paths: Sequence[tuple[Path, Feature]], kind: Kind, terms:
 def _insides(
     faces: Sequence[Polygon],
     lines: Sequence[tuple[Path, Feature]],
-    solid_walls: Sequence[Obstacle],
+    solids: Sequence[Obstacle],
 ) -> list[Obstacle]:
     """The insides of walls that are drawn by their faces, as obstacles."""
-    known = shapely.union_all([wall.region() for wall in solid_walls])
+    known = shapely.union_all([solid.region() for solid in solids])
     shapely.prepare(known)
-    tree = shapely.STRtree([middle_line(path) for path, _ in lines])
-    found = []
-    for face in faces:
-        is_crumb = face.area < CLOSE_GAPS_MM**2
-        if is_crumb or known.contains(face.representative_point()) or not is_thin(face):
-            continue
-        placed = lines[tree.nearest(face)][1].placed
-        found.append(Obstacle(face, Kind.WALL, placed.layer, placed.handle))
-    return found
+    is_known = shapely.contains(known, shapely.point_on_surface(faces))
+    is_crumb = shapely.area(faces) < CLOSE_GAPS_MM**2
+    thin = [
+        face
+        for face, is_out in zip(faces, is_known | is_crumb, strict=True)
+        if not is_out and is_thin(face, WALL_MM)
+    ]
+    nearest = shapely.STRtree(middle_lines(path for path, _ in lines)).nearest(thin)
+    owners = [lines[i][1].placed for i in nearest]
+    return [
+        Obstacle(face, Kind.WALL, placed.layer, placed.handle)
+        for face, placed in zip(thin, owners, strict=True)
+    ]
 
 
 def _is_wall_thick(shape: Shape) -> bool:
     if isinstance(shape, Circle):
         return 2 * shape.radius_mm <= WALL_MM
-    return isinstance(shape, LineString) or is_thin(shape)
+    return isinstance(shape, LineString) or is_thin(shape, WALL_MM)
 
 
 def outlines_of(obstacles: Iterable[Obstacle]) -> list[LineString]:

@@ -12,12 +12,11 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 import shapely
-from shapely.geometry import MultiLineString
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Arc, Point
 from satAOI_adapters.dxf_read.entities import Feature
-from satAOI_adapters.dxf_read.linework import is_thin
+from satAOI_adapters.dxf_read.shapes import GeometryArray, is_thin
 from satAOI_adapters.layers import KINDS, Meaning
 from satAOI_geo.errors import InputError
 from satAOI_geo.plan import Finding, Frame, polygons_in
@@ -77,18 +76,17 @@ def clusters(drawn: Drawn) -> list[Cluster]:
     pairs = [(m, feature) for m, features in drawn.items() if m is not None for feature in features]
     if not pairs:
         return []
-    lines = np.array([_lines(feature) for _, feature in pairs])
+    lines = _lines([feature for _, feature in pairs])
     owners = _grouped(lines)
-    found = []
-    for owner in range(owners.max() + 1):
-        members = [pairs[i] for i in np.flatnonzero(owners == owner)]
-        found.append(
-            Cluster(
-                shapely.convex_hull(shapely.geometrycollections(lines[owners == owner])),
-                Counter(meaning for meaning, _ in members),
-                sum(_n_swings(feature) for _, feature in members),
-            )
-        )
+    counts: list[Counter[Meaning]] = [Counter() for _ in range(owners.max() + 1)]
+    swings: Counter[int] = Counter()
+    for owner, (meaning, feature) in zip(owners.tolist(), pairs, strict=True):
+        counts[owner][meaning] += 1
+        swings[owner] += _n_swings(feature)
+    found = [
+        Cluster(hull, count, swings[owner])
+        for owner, (hull, count) in enumerate(zip(_hulls(lines, owners), counts, strict=True))
+    ]
     return sorted((c for c in found if c.is_plan), key=lambda c: c.rank, reverse=True)
 
 
@@ -99,7 +97,8 @@ def within(drawn: Drawn, part: BaseGeometry) -> tuple[Drawn, int]:
     kept: Drawn = {}
     n_left_out = 0
     for meaning, features in drawn.items():
-        kept[meaning] = [feature for feature in features if reach.intersects(_lines(feature))]
+        is_in = shapely.intersects(reach, _lines(features))
+        kept[meaning] = [feature for feature, keeps in zip(features, is_in, strict=True) if keeps]
         n_left_out += len(features) - len(kept[meaning])
     return kept, n_left_out
 
@@ -161,31 +160,54 @@ def _n_swings(feature: Feature) -> int:
     )
 
 
-def _lines(feature: Feature) -> MultiLineString:
-    """What a feature draws, its curves by chords."""
-    return MultiLineString([path.chords() for path in feature.paths])
+def _lines(features: Sequence[Feature]) -> GeometryArray:
+    """Roughly what features draw: a geometry for each."""
+    paths = [path.rough() for feature in features for path in feature.paths]
+    if not paths:
+        return np.array([], dtype=object)
+    of_path = np.repeat(np.arange(len(paths)), [len(path) for path in paths])
+    of_feature = np.repeat(np.arange(len(features)), [len(feature.paths) for feature in features])
+    chains = shapely.linestrings(np.concatenate(paths), indices=of_path)
+    return np.asarray(shapely.multilinestrings(chains, indices=of_feature))
 
 
-def _grouped(lines: npt.NDArray[np.object_]) -> npt.NDArray[np.int64]:
+def _grouped(lines: GeometryArray) -> npt.NDArray[np.int64]:
     """The number of the cluster that each drawn thing belongs to; hulls of clusters are apart."""
+    if _are_under_one_hull(lines):
+        return np.zeros(len(lines), dtype=np.int64)
     owners = _dissolved(shapely.buffer(lines, BLANK_MM / 2, quad_segs=2), lines)
     while True:
-        n = owners.max() + 1
-        hulls = np.array(
-            [
-                shapely.convex_hull(shapely.geometrycollections(lines[owners == owner]))
-                for owner in range(n)
-            ]
-        )
+        hulls = _hulls(lines, owners)
         merged = _dissolved(shapely.buffer(hulls, TOUCH_MM, quad_segs=2), hulls)
-        if merged.max() + 1 == n:
+        if merged.max() + 1 == len(hulls):
             return owners
         owners = merged[owners]
 
 
-def _dissolved(
-    grown: npt.NDArray[np.object_], things: npt.NDArray[np.object_]
-) -> npt.NDArray[np.int64]:
+def _are_under_one_hull(lines: GeometryArray) -> bool:
+    """Whether the hull of the largest thing, and of what it meets, meets all the others.
+
+    They are one cluster then, as where a floor is drawn, and nothing has to be dissolved.
+    """
+    hull = shapely.convex_hull(lines[np.argmax(shapely.area(shapely.convex_hull(lines)))])
+    n_met = 0
+    while True:
+        shapely.prepare(hull)
+        meets = shapely.intersects(hull, lines)
+        if meets.sum() == n_met:
+            return bool(meets.all())
+        n_met = meets.sum()
+        hull = shapely.convex_hull(shapely.geometrycollections(lines[meets]))
+
+
+def _hulls(lines: GeometryArray, owners: npt.NDArray[np.int64]) -> GeometryArray:
+    """The convex hull of each cluster."""
+    order = np.argsort(owners, kind="stable")
+    together = shapely.geometrycollections(lines[order], indices=owners[order])
+    return np.asarray(shapely.convex_hull(together))
+
+
+def _dissolved(grown: GeometryArray, things: GeometryArray) -> npt.NDArray[np.int64]:
     """Numbers of the groups that things form whose grown shapes overlap."""
     parts = polygons_in([shapely.union_all(grown)])
     spots = shapely.point_on_surface(things)

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Final, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 import shapely
 from ezdxf.entities import Circle as CircleEntity
 from ezdxf.entities import DXFEntity, DXFGraphic, Insert
@@ -53,7 +54,7 @@ SOLID_KINDS: Final = (Kind.COLUMN, Kind.HOLE, Kind.EMBEDDED, Kind.EQUIPMENT)
 ON_EDGE_MM: Final = 1e-3
 """An obstacle this close to the floor reaches it."""
 
-ShapeT = TypeVar("ShapeT", Region, Shape)
+GeometryT = TypeVar("GeometryT", bound=Region | npt.NDArray[np.object_])
 
 
 def read(path: Path, options: ReadOptions) -> FloorPlan:
@@ -231,21 +232,40 @@ def _from_corner(plan: FloorPlan) -> FloorPlan:
     shift_mm = np.floor(np.round((left_mm, bottom_mm), LOCAL_DIGITS))
     x_mm, y_mm = plan.frame.origin_mm
     origin_mm = (x_mm + float(shift_mm[0]), y_mm + float(shift_mm[1]))
+    shapes = _moved([obstacle.shape for obstacle in plan.obstacles], shift_mm)
     return replace(
         plan,
-        floor=_moved(plan.floor, shift_mm),
-        obstacles=tuple(replace(o, shape=_moved(o.shape, shift_mm)) for o in plan.obstacles),
+        floor=_shifted(plan.floor, shift_mm),
+        obstacles=tuple(
+            replace(obstacle, shape=shape)
+            for obstacle, shape in zip(plan.obstacles, shapes, strict=True)
+        ),
         frame=replace(plan.frame, origin_mm=origin_mm),
         start_mm=None if plan.start_mm is None else _spot(np.subtract(plan.start_mm, shift_mm)),
     )
 
 
-def _moved(shape: ShapeT, shift_mm: FloatArray) -> ShapeT:
-    """A shape with its coordinates taken from another origin, and still to `LOCAL_DIGITS`."""
-    if isinstance(shape, Circle):
-        x_mm, y_mm = _spot(np.subtract((shape.x_mm, shape.y_mm), shift_mm))
-        return replace(shape, x_mm=x_mm, y_mm=y_mm)
-    return shapely.transform(shape, lambda points: np.round(points - shift_mm, LOCAL_DIGITS) + 0.0)
+def _moved(shapes: Sequence[Shape], shift_mm: FloatArray) -> list[Shape]:
+    """Shapes with their coordinates taken from another origin, and still to `LOCAL_DIGITS`."""
+    drawn = [shape for shape in shapes if not isinstance(shape, Circle)]
+    moved = iter(_shifted(np.array(drawn, dtype=object), shift_mm))
+    return [
+        _moved_circle(shape, shift_mm) if isinstance(shape, Circle) else next(moved)
+        for shape in shapes
+    ]
+
+
+def _moved_circle(circle: Circle, shift_mm: FloatArray) -> Circle:
+    x_mm, y_mm = _spot(np.subtract((circle.x_mm, circle.y_mm), shift_mm))
+    return replace(circle, x_mm=x_mm, y_mm=y_mm)
+
+
+def _shifted(geometry: GeometryT, shift_mm: FloatArray) -> GeometryT:
+    """A geometry, or each of an array of them, from another origin."""
+    moved: GeometryT = shapely.transform(
+        geometry, lambda points: np.round(points - shift_mm, LOCAL_DIGITS) + 0.0
+    )
+    return moved
 
 
 def _spot(point_mm: FloatArray) -> Point:

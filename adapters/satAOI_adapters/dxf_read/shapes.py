@@ -7,18 +7,20 @@ width stays one; a curve without width becomes a sliver, at most twice that wide
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 import shapely
-from shapely.geometry import LineString, MultiPoint, Polygon
+from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from satAOI_adapters.dxf_read.curves import SAGITTA_MM, Arc, Line, Path, Piece, Point, Spline
+from satAOI_adapters.dxf_read.curves import SAGITTA_MM, Arc, Line, Path, Point, Spline
 from satAOI_adapters.dxf_read.entities import LOCAL_DIGITS
 from satAOI_geo.plan import Circle, FloatArray, Region, Shape, as_region, polygons_in
 
-GeometryT = TypeVar("GeometryT", bound=BaseGeometry)
+GeometryArray: TypeAlias = npt.NDArray[np.object_]
+GeometryT = TypeVar("GeometryT", bound=BaseGeometry | GeometryArray)
 
 SAME_MM = 10.0**-LOCAL_DIGITS
 """The grid of coordinates: what is this close is one."""
@@ -57,6 +59,23 @@ def solid(path: Path) -> list[Polygon]:
     if direct is not None:
         return [direct]
     return polygons_in([shapely.union_all([_by_chords(path), *slivers(path)])])
+
+
+def is_wide(path: Path, width_mm: float) -> bool:
+    """Whether a disc of this diameter surely fits into what a closed path encloses."""
+    return not is_thin(_by_chords(path), width_mm + 4 * SAGITTA_MM)
+
+
+def is_thin(region: BaseGeometry, width_mm: float) -> bool:
+    """Whether no disc of this diameter fits into a region."""
+    left, bottom, right, top = region.bounds
+    # false for the bounds of nothing, which are not numbers
+    if right - left <= width_mm or top - bottom <= width_mm:
+        return True
+    inside = region.point_on_surface()
+    if region.boundary.distance(inside) > width_mm / 2:
+        return False
+    return bool(region.buffer(-width_mm / 2).is_empty)
 
 
 def room(path: Path) -> list[Polygon]:
@@ -127,12 +146,22 @@ def middle_line(path: Path) -> LineString:
     return LineString(_round(path.chords()))
 
 
+def middle_lines(paths: Iterable[Path]) -> GeometryArray:
+    """Paths by their chords, as `middle_line` has each of them."""
+    chains = [path.chords() for path in paths]
+    if not chains:
+        return np.array([], dtype=object)
+    owners = np.repeat(np.arange(len(chains)), [len(chain) for chain in chains])
+    return np.asarray(shapely.linestrings(_round(np.concatenate(chains)), indices=owners))
+
+
 def rounded(polygons: Iterable[Polygon]) -> list[Polygon]:
     """Polygons with corners to `entities.LOCAL_DIGITS`, still valid: hairs may fall off."""
-    found = []
-    for polygon in polygons:
-        neat = _round_corners(polygon)
-        found.extend([neat] if neat.is_valid else polygons_in([tidy(polygon)]))
+    exact = np.array(list(polygons), dtype=object)
+    neat = _round_corners(exact)
+    found: list[Polygon] = []
+    for drawn, polygon, is_valid in zip(exact, neat, shapely.is_valid(neat), strict=True):
+        found.extend([polygon] if is_valid else polygons_in([tidy(drawn)]))
     return found
 
 
@@ -142,6 +171,7 @@ def tidy(region: BaseGeometry) -> Region:
 
 
 def _round_corners(region: GeometryT) -> GeometryT:
+    """A geometry, or each of an array of them, with corners to `entities.LOCAL_DIGITS`."""
     neat: GeometryT = shapely.transform(region, lambda xy: np.round(xy, LOCAL_DIGITS) + 0.0)
     return neat
 
@@ -159,27 +189,28 @@ def shapes_of(path: Path) -> list[Shape]:
 
 
 def _one_sided(path: Path, *, outside: bool) -> Polygon | None:
-    """The polygon of a closed path on the wanted side; None if it crosses itself or has splines."""
-    if any(isinstance(piece, Spline) for piece in path.pieces):
-        return None
-    goes_left = _signed_area(path.chords()) > 0
-    points = [path.start]
-    for piece in path.pieces:
-        points.extend(_corners(piece, by_tangents=_bulges_out(piece, goes_left) == outside)[1:])
+    """The polygon of a closed path on the wanted side; None if it crosses itself."""
+    points = path.chords() if path.is_straight else _corners(path, outside=outside)
     if len(points) < 4:
         return None
     polygon = Polygon(_round(points))
     return polygon if polygon.is_valid and polygon.area else None
 
 
-def _bulges_out(piece: Piece, goes_left: bool) -> bool:  # noqa: FBT001 - the outline's sense
-    return isinstance(piece, Arc) and piece.turns_left == goes_left
-
-
-def _corners(piece: Piece, *, by_tangents: bool) -> list[Point]:
-    if isinstance(piece, Arc):
-        return piece.tangents() if by_tangents else piece.chords()
-    return [piece.start, piece.end]
+def _corners(path: Path, *, outside: bool) -> list[Point]:
+    """The corners of a closed path, each curve in it taken on the wanted side."""
+    goes_left = _signed_area(path.chords()) > 0
+    points = [path.start]
+    for piece in path.pieces:
+        if isinstance(piece, Line):
+            points.append(piece.end)
+        elif isinstance(piece, Spline):
+            points.extend(piece.beside(left=goes_left != outside))
+        elif (piece.turns_left == goes_left) == outside:
+            points.extend(piece.tangents()[1:])
+        else:
+            points.extend(piece.chords()[1:])
+    return points
 
 
 def _by_chords(path: Path) -> BaseGeometry:
@@ -196,10 +227,13 @@ def _sliver(piece: Arc | Spline) -> list[Polygon]:
     if isinstance(piece, Arc):
         around = Polygon(_round([*piece.tangents(), *reversed(piece.inner()[1:-1])]))
         return [around] if around.is_valid and around.area else _cut_sliver(piece)
-    hulls = [MultiPoint(hull).convex_hull for hull in piece.hulls()]
+    points = piece.hulls()
+    owners = np.repeat(np.arange(len(points)), points.shape[1])
+    hulls = shapely.convex_hull(shapely.multipoints(points.reshape(-1, 2), indices=owners))
     # hulls of straight pieces are lines: give them the width that a curve's hull has at most
-    thick = [hull if isinstance(hull, Polygon) else hull.buffer(SAGITTA_MM / 2) for hull in hulls]
-    return rounded(polygons_in([shapely.union_all(thick)]))
+    is_line = shapely.get_dimensions(hulls) < 2
+    hulls[is_line] = shapely.buffer(hulls[is_line], SAGITTA_MM / 2)
+    return rounded(polygons_in([shapely.union_all(hulls)]))
 
 
 def _cut_sliver(piece: Arc) -> list[Polygon]:
@@ -216,7 +250,7 @@ def _chain(points: Sequence[Point]) -> list[LineString]:
     return [LineString(_round(points))] if len(points) > 1 else []
 
 
-def _round(points: Sequence[Point]) -> FloatArray:
+def _round(points: Sequence[Point] | FloatArray) -> FloatArray:
     return np.asarray(np.round(points, LOCAL_DIGITS) + 0.0, dtype=np.float64)
 
 
