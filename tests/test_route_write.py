@@ -393,7 +393,7 @@ def test_what_was_written_is_told(
         (["--to", at(5.35, 2.55)], 4, "This point lies in column"),
         (["--to", at(0.01, 0.01)], 4, "This point is left over"),
         (["--to", at(-3.0, 0.0)], 4, "This point is not on the floor"),
-        (["--to", "nan,inf"], 4, "no route leads to nan,inf"),
+        (["--to", "nan,inf"], 2, "'nan,inf' is not two numbers"),
         (["--to", at(6.8, 4.5), "--start", at(5.35, 2.55)], 4, "in the way"),
         (["--to", "7"], 2, "'7' is not two numbers with a comma"),
         ([], 2, "--to"),
