@@ -108,7 +108,7 @@ def test_every_obstacle_of_the_svg_tells_layer_and_handle(tmp_path: Path) -> Non
 def test_the_key_tells_every_kind_how_often_it_stands_there(tmp_path: Path) -> None:
     said = words(page_of(inspected(hall(), tmp_path)))
     assert "floor: 100.00 m² (layer)" in said
-    assert "column: 1 piece, 0.25 m²" in said
+    assert "column: 1 piece, 0.25 m² of the floor" in said
     assert "wall: none" in said
     assert {word.split(":")[0] for word in said} >= {*Kind}
 
@@ -170,6 +170,8 @@ def test_a_drawing_that_is_no_plan_is_drawn_with_the_reason(tmp_path: Path) -> N
     assert labels(page, RED) == ["!", "!"]
     assert "Cannot be used as it is" in words(page)
     assert "is open" in " ".join(words(page, RED))
+    strokes = [path.get("stroke") for path in elements(page, "path")]
+    assert strokes.count(COLOURS[Kind.COLUMN]) == 2  # in the key and on the plan
 
 
 @pytest.mark.parametrize("width_m", [0.03, 1, 7, 12, 230, 41_000])

@@ -129,7 +129,8 @@ class Key:
         if found.sketch is not None:
             line = LineString([(self.x, self.y), (self.x + 2 * BADGE, self.y)])
             self._sign([Strokes((line,), NO_OBSTACLE, THICK)])
-            self._paragraph("drawn, and no obstacle; paler colours: left out of this plan")
+            paler = "" if plan is None else "; paler colours: left out of this plan"
+            self._paragraph(f"drawn, and no obstacle{paler}")
             if len(found.sketch.parts_mm) > 1:
                 self._sign(badge(self.x + BADGE, self.y, "N", BLUE))
                 self._paragraph("part that may be a plan, for --plan N")
@@ -163,4 +164,4 @@ def _amount(plan: FloorPlan, kind: Kind) -> str:
         return "none"
     area_m2 = shapely.union_all(regions).intersection(plan.floor).area / MM2_PER_M2
     pieces = "1 piece" if len(regions) == 1 else f"{len(regions)} pieces"
-    return f"{pieces}, {area_m2:.2f} m²"
+    return f"{pieces}, {area_m2:.2f} m² of the floor"

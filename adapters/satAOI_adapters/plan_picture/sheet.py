@@ -1,7 +1,7 @@
 """The plan on the page: floor, lines, obstacles, parts, start, places of findings."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -29,7 +29,7 @@ from satAOI_adapters.plan_picture.style import (
     THIN,
     WHITE,
 )
-from satAOI_geo.plan import FloatArray, FloorPlan, Frame, Obstacle, polygons_in
+from satAOI_geo.plan import FloatArray, FloorPlan, Frame, Kind, Obstacle, polygons_in
 
 ROOM: Final = 0.03
 """Blank space around the plan, as a share of its larger side."""
@@ -117,7 +117,7 @@ def plan_marks(found: Inspected[Figures], sheet: Sheet) -> Iterator[Mark]:
         for polygon in sheet.polygons(plan.floor, plan.frame):
             yield Area(polygon, FLOOR_FILL, FLOOR_EDGE, THICK, "floor")
     if sketch is not None:
-        yield from _lines(sketch, sheet)
+        yield from _lines(sketch, sheet, COLOURS if plan is None else PALE)
     if plan is not None:
         for kind in COLOURS:
             for obstacle in plan.obstacles:
@@ -145,11 +145,11 @@ def _bounds_mm(points_mm: FloatArray, frame: Frame) -> Bounds:
     return float(left_mm), float(bottom_mm), float(right_mm), float(top_mm)
 
 
-def _lines(sketch: Sketch, sheet: Sheet) -> Iterator[Strokes]:
-    """All that is drawn, thin and pale; what stands on the floor is drawn over it."""
+def _lines(sketch: Sketch, sheet: Sheet, colours: Mapping[Kind, str]) -> Iterator[Strokes]:
+    """All that is drawn, in thin lines; what stands on the floor comes over it."""
     for kind, lines in sketch.lines.items():
         if lines:
-            colour = NO_OBSTACLE if kind is None else PALE[kind]
+            colour = NO_OBSTACLE if kind is None else colours[kind]
             yield Strokes(sheet.lines(lines, sketch.frame), colour, THIN)
 
 
