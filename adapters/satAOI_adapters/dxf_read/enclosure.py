@@ -132,7 +132,11 @@ def enclosed(bounds: Sequence[BaseGeometry]) -> Region:
     mesh = Mesh.over(samples)
     found: BaseGeometry = Polygon()
     for opening_mm in OPENING_STEPS_MM:
-        found = shapely.union_all([found, *_dry_faces(mesh, walls, found, opening_mm)])
+        faces = _dry_faces(mesh, walls, found, opening_mm)
+        if faces:
+            found = shapely.union_all([found, *faces])
+            # what lies within is settled
+            walls = shapely.union_all([*_beyond(found, shapely.get_parts(walls)), found.boundary])
     filled = shapely.union_all([bound for bound in bounds if isinstance(bound, Polygon)])
     return _with_rooms(found, filled)
 
@@ -162,12 +166,11 @@ def _dry_faces(
     """
     outside = mesh.outside(opening_mm)
     rim = mesh.rim(outside)
-    bounds = shapely.union_all([*_beyond(known, shapely.get_parts(walls)), known.boundary])
-    shapely.prepare(bounds)
+    shapely.prepare(walls)
     middles = shapely.line_interpolate_point(rim, 0.5, normalized=True)
-    seals = _beyond(known, rim[~shapely.dwithin(bounds, middles, ON_LINE_MM)])
+    seals = _beyond(known, rim[~shapely.dwithin(walls, middles, ON_LINE_MM)])
     # snapped to the grid, since samples lie on oblique walls only up to rounding
-    noded = shapely.union_all([bounds, *seals], grid_size=SAME_MM)
+    noded = shapely.union_all([walls, *seals], grid_size=SAME_MM)
     cut = np.array(shapely.polygonize([noded]).geoms)
     faces = rounded(cut[shapely.area(cut) > CRUMB_MM2])
     if not faces:
