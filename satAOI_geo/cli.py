@@ -1,4 +1,4 @@
-"""satAOI-geo: parse, call, print, exit code; the only module that knows the adapters.
+"""satAOI-geo: parse, call, print, exit code.
 
 Data goes to standard output, talk to standard error. What a command needs is imported when it
 runs, so that `--help` answers at once.
@@ -24,6 +24,7 @@ from satAOI_geo.errors import (
 from satAOI_geo.options import (
     AT,
     EXACT_OUTLINE,
+    IFC,
     INSPECTION,
     JSON,
     ONLY_DXF,
@@ -36,16 +37,26 @@ from satAOI_geo.options import (
     ROUTE_OUTPUT,
     STRICT,
     TO,
-    Drafts,
+    Inspecting,
     Outputs,
     Question,
     Reading,
     StartAt,
     taking,
 )
+from satAOI_geo.outputs import (
+    refuse_drafts_early,
+    refuse_early,
+    refuse_targets,
+    tell,
+    tell_figures,
+    tell_route,
+    write,
+    write_drafts,
+)
 
 if TYPE_CHECKING:
-    from satAOI_adapters import Choices, Inspection
+    from satAOI_adapters import Choices
     from satAOI_geo.pipeline import Result
     from satAOI_geo.plan import FloorPlan
     from satAOI_geo.progress import Progress
@@ -63,11 +74,6 @@ EXIT_CODES: Final[dict[type[SatAoiError], int]] = {
     StartError: 4,
     LimitError: 5,
 }
-
-STANDARD_OUTPUT: Final = Path("-")
-IFC: Final = ".ifc"
-ONLY_FROM_IFC: Final = {".ifc", ".bcf"}
-"""Outputs that add to the model that the plan was read from."""
 
 EPILOG: Final = (
     "Exit codes: 0 done; 1 findings, with --strict; 2 usage; 3 drawing unusable; "
@@ -219,24 +225,6 @@ def route_to(result: "Result", at: tuple[float, float]) -> "Route":
         raise NoRouteError(message, at_mm=error.at_mm) from error
 
 
-def tell_route(result: "Result", found: "Route", output: tuple[Path, ...], *, quiet: bool) -> None:
-    """Say the findings and a route's figures, the output itself where no other is asked for."""
-    from satAOI_adapters.route_write import lines_of
-    from satAOI_adapters.terminal import say_findings, say_note, write_table
-
-    if not output:
-        write_table(lines_of(found), sys.stdout)
-    if quiet:
-        return
-    say_findings(result.report.findings)
-    if output:
-        write_table(lines_of(found), sys.stderr)
-    else:
-        say_note("no file was written; --output FILE.dxf draws the route into the plan")
-    for path in output:
-        say_note(f"wrote {path}")
-
-
 def answer(
     path: Path, options: PlanOptions, *, exact_outline: bool = False, quiet: bool
 ) -> "Result":
@@ -361,85 +349,6 @@ def refuse_options_of_other_formats(path: Path, options: Reading) -> None:
         raise InputError(f"{given[0]} says nothing about a plan in {format_name}; leave it out")
 
 
-def refuse_early(plan: Path, outputs: Outputs, read: list[Path | None]) -> None:
-    """Refuse outputs that could not be written, before any work is done for them.
-
-    Raises:
-        InputError: If one has a suffix that no writer knows or that does not go with the plan's,
-            is an input, is asked for twice, or cannot be a file at all.
-    """
-    from satAOI_adapters import writer_of
-
-    for path in areas_of(outputs):
-        writer_of(path)
-        if path.suffix.lower() in ONLY_FROM_IFC and plan.suffix.lower() != IFC:
-            raise InputError(f"'{path}' adds to an IFC model, and '{plan}' is none; write a DXF")
-    refuse_targets(files_of(outputs), read)
-
-
-def refuse_targets(files: Sequence[Path], read: list[Path | None]) -> None:
-    """Refuse files that could not be written.
-
-    Raises:
-        InputError: If one is an input, is asked for twice, or cannot be a file at all.
-    """
-    from satAOI_adapters.files import refuse_unfit_target
-
-    seen: list[Path] = []
-    for path in files:
-        refuse_unfit_target(path, [one for one in read if one is not None])
-        if path.absolute() in seen:
-            raise InputError(f"'{path}' is asked for twice; give each output a name of its own")
-        seen.append(path.absolute())
-
-
-def areas_of(outputs: Outputs) -> list[Path]:
-    """The files that the area of interest is written to."""
-    raster = outputs["raster"]
-    return [*outputs["output"], *([] if raster is None else [raster])]
-
-
-def files_of(outputs: Outputs) -> list[Path]:
-    """All files to be written."""
-    report = outputs["report"]
-    return [*areas_of(outputs), *([] if report in {None, STANDARD_OUTPUT} else [report])]
-
-
-def write(result: "Result", outputs: Outputs) -> None:
-    """Write what was asked for, each file whole or not at all."""
-    from satAOI_adapters import report_write, write_aoi
-    from satAOI_adapters.files import json_of
-
-    for path in areas_of(outputs):
-        write_aoi(path, result)
-    if outputs["report"] == STANDARD_OUTPUT:
-        click.echo(json_of(result.report), nl=False)
-    elif outputs["report"] is not None:
-        report_write.write(outputs["report"], result.report)
-
-
-def tell(result: "Result", outputs: Outputs, *, quiet: bool) -> None:
-    """Say the findings and the figures.
-
-    The figures are talk beside an output, and the output itself where none is asked for.
-    """
-    from satAOI_adapters.report_write import lines_of
-    from satAOI_adapters.terminal import say_findings, say_note, write_table
-
-    alone = not areas_of(outputs) and outputs["report"] is None
-    if alone:
-        write_table(lines_of(result.report), sys.stdout)
-    if quiet:
-        return
-    say_findings(result.report.findings)
-    if alone:
-        say_note("no file was written; --output FILE.dxf draws the area into the plan")
-    else:
-        write_table(lines_of(result.report), sys.stderr)
-    for path in files_of(outputs):
-        say_note(f"wrote {path}")
-
-
 @commands.command()
 @taking(OUTPUTS)
 @click.pass_context
@@ -455,13 +364,9 @@ def demo(context: click.Context, **outputs: Unpack[Outputs]) -> int:
     return code
 
 
-class InspectOptions(Reading, Drafts):
-    """All that `inspect` can be asked."""
-
-
 @commands.command(epilog=EPILOG)
 @taking(PLAN, INSPECTION, READING, JSON)
-def inspect(*, plan: Path, json: bool, **options: Unpack[InspectOptions]) -> int:
+def inspect(*, plan: Path, json: bool, **options: Unpack[Inspecting]) -> int:
     """Tell how a plan is read: unit, size, layers or storeys, and what is odd about it.
 
     satAOI-geo inspect plan.dxf --picture plan.png
@@ -482,54 +387,6 @@ def inspect(*, plan: Path, json: bool, **options: Unpack[InspectOptions]) -> int
     if found.error is not None:
         raise found.error
     return DONE
-
-
-def refuse_drafts_early(plan: Path, options: InspectOptions) -> None:
-    """Refuse what could not be written, before any work is done for it.
-
-    Raises:
-        InputError: If a name has a suffix that is not its format's, is an input, is asked for
-            twice, or cannot be that of a file at all.
-    """
-    from satAOI_adapters import layers_writer_of, picture_writer_of
-
-    picture, layers = options["picture"], options["write_layers"]
-    if picture is not None:
-        picture_writer_of(picture)
-    if layers is not None:
-        layers_writer_of(layers)
-    refuse_targets(
-        [file for file in (picture, layers) if file is not None], [plan, options["layers"]]
-    )
-
-
-def write_drafts(plan: Path, found: "Inspection", options: InspectOptions) -> None:
-    """Write what was asked for, as far as there is something to show; each file whole or not."""
-    from satAOI_adapters import layers_writer_of, picture_writer_of
-    from satAOI_adapters.terminal import say_note
-
-    inputs = [file for file in (plan, options["layers"]) if file is not None]
-    picture, layers = options["picture"], options["write_layers"]
-    if layers is not None and found.layers is not None:
-        layers_writer_of(layers)(layers, found.layers, inputs)
-        say_note(f"wrote {layers}")
-    if picture is not None and (found.plan is not None or found.sketch is not None):
-        picture_writer_of(picture)(picture, found, inputs)
-        say_note(f"wrote {picture}")
-
-
-def tell_figures(found: "Inspection", *, json: bool) -> None:
-    """Print an inspection's figures as tables or as JSON."""
-    from satAOI_adapters import inspect_write
-    from satAOI_adapters.files import json_of
-    from satAOI_adapters.terminal import write_table
-
-    if json:
-        click.echo(json_of(found.figures), nl=False)
-        return
-    for number, table in enumerate(inspect_write.tables_of(found.figures)):
-        click.echo("\n" * min(number, 1), nl=False)
-        write_table(table, sys.stdout)
 
 
 @commands.command()

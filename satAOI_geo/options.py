@@ -165,6 +165,9 @@ class Reading(TypedDict):
     without_classes: tuple[str, ...]
 
 
+IFC: Final = ".ifc"
+"""Suffix of models, to which other options belong than to drawings."""
+
 ONLY_DXF: Final = {
     "write_layers": "--write-layers",
     "layers": "--layers",
@@ -397,8 +400,8 @@ QUIET: Final[Group] = (click.option("-q", "--quiet", is_flag=True, help="Say not
 JSON: Final[Group] = (click.option("--json", is_flag=True, help="Write JSON rather than tables."),)
 
 
-class Drafts(TypedDict):
-    """What an inspection writes."""
+class Inspecting(Reading):
+    """All that `inspect` can be asked."""
 
     picture: Path | None
     write_layers: Path | None
