@@ -91,7 +91,7 @@ def test_the_raster_finds_all_that_is_free_with_half_a_cell_to_spare() -> None:
     # occupied centres lie in true obstacles, and a vehicle is shifted by half a diagonal at most
     plan = plans.random_plan(3, n_obstacles=4, side_mm=(4000, 5000))
     lattice = coarse(plan)
-    spare = Intervals(plan, PROTOTYPE, lattice, clearance_mm=STEP_MM / math.sqrt(2))
+    spare = Intervals.of(plan, PROTOTYPE, lattice, clearance_mm=STEP_MM / math.sqrt(2))
     expected = free_space(spare, PROTOTYPE, lattice).free_nodes()
     assert expected.any()
     rim = rim_of_footprints(PROTOTYPE, lattice)
@@ -114,7 +114,7 @@ def test_the_paper_s_search_reaches_all_of_an_empty_room_but_a_rim() -> None:
     # 60 × 60 cells, the disc 7 cells in radius: the rim beyond the edge is in contact with a disc
     # on the 7th node, not on the 8th
     plan = FloorPlan(box(0, 0, 3000, 3000))
-    lattice = coarse(plan)
+    lattice = Lattice.over(plan.floor.bounds, PROTOTYPE, step_mm=STEP_MM, n_directions=4)
     loop = KdTreeArrays(occupied_cells(plan, lattice), lattice, PROTOTYPE)
     reached = flooded((30, 30), loop.fits)
     assert reached == {(iy, ix) for iy in range(7, 53) for ix in range(7, 53)}
