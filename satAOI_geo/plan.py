@@ -171,6 +171,8 @@ class Source:
         format: `dxf`, `ifc`, or `memory` for a plan made in Python.
         unit: Key of `units.MM_PER_UNIT`.
         unit_source: How the unit is known: `option`, `header`, `estimate` or `given`.
+        encoding: Of the names in a drawing that is text (DXF), by its name in Python; the header
+            may claim another.
         storey: GlobalId of the storey (IFC), or an empty string.
         height_mm: Height of the floor in the model (IFC); a drawing has none and lies at 0.
     """
@@ -180,6 +182,7 @@ class Source:
     format: str = "memory"
     unit: str = "mm"
     unit_source: str = "given"
+    encoding: str = ""
     storey: str = ""
     height_mm: float = 0.0
 

@@ -1,12 +1,14 @@
 """Files as they come: of other kinds, damaged, in other encodings."""
 
 import io
+import math
 from pathlib import Path
 
 import ezdxf
 import pytest
 
 from satAOI_adapters.dxf_read import ReadOptions, read
+from satAOI_adapters.dxf_write.document import base_document, file_bytes
 from satAOI_geo.errors import DrawingError, InputError, UnreadableError
 from satAOI_geo.plan import FloorPlan, Kind
 from tests.drawings import MM, codes, drawing, plan_of, rectangle
@@ -72,11 +74,38 @@ def line_to(x: str) -> str:
 
 
 @pytest.mark.parametrize("x", ["nan", "inf", "-inf", "1e400"])
-def test_coordinate_that_is_no_finite_number_is_refused(x: str, tmp_path: Path) -> None:
-    with pytest.raises(DrawingError, match="not a finite number") as caught:
+def test_coordinate_that_is_no_finite_number_is_refused_with_its_place(
+    x: str, tmp_path: Path
+) -> None:
+    with pytest.raises(DrawingError) as caught:
         read_text(line_to(x), tmp_path)
     assert caught.value.layer == "WALL"
     assert caught.value.handle
+    assert str(caught.value).startswith(
+        f"LINE {caught.value.handle} on layer 'WALL' cannot be read: group code 11 is {float(x)}, "
+        "not a finite number"
+    )
+
+
+def test_coordinate_that_is_no_finite_number_is_found_in_a_block(tmp_path: Path) -> None:
+    document = drawing()
+    line = document.blocks.new("B").add_line((0, 0), (1, math.nan), dxfattribs={"layer": "0"})
+    document.modelspace().add_blockref("B", (1000, 1000), dxfattribs={"layer": "WALL"})
+    with pytest.raises(DrawingError) as caught:
+        plan_of(document, tmp_path)
+    assert str(caught.value).startswith(
+        f"LINE {line.dxf.handle} on layer 'WALL' in block 'B' cannot be read: group code 21 is nan"
+    )
+
+
+def test_block_reference_that_lies_nowhere_is_refused(tmp_path: Path) -> None:
+    document = drawing()
+    document.blocks.new("B").add_line((0, 0), (1, 0))
+    document.modelspace().add_blockref(
+        "B", (0, 0), dxfattribs={"layer": "WALL", "xscale": math.inf}
+    )
+    with pytest.raises(DrawingError, match=r"block 'B' on layer 'WALL'.*group code 41 is inf"):
+        plan_of(document, tmp_path)
 
 
 @pytest.mark.parametrize(("x", "says"), [("12,5", "decimal points"), ("1.#QNAN", "1.#QNAN")])
@@ -85,7 +114,9 @@ def test_number_that_is_none_is_refused_with_its_line(x: str, says: str, tmp_pat
     with pytest.raises(UnreadableError, match=says) as caught:
         read_text(text, tmp_path)
     line = text[: text.index(f"{x}\n")].count("\n") + 1
-    assert f"line {line}" in str(caught.value)
+    assert f"line {line}, group code 11 of LINE {caught.value.handle} on layer 'WALL'" in str(
+        caught.value
+    )
 
 
 def test_stray_entity_far_away_is_left_out_and_said(tmp_path: Path) -> None:
@@ -135,6 +166,25 @@ def test_chinese_layers_are_known_whatever_the_header_claims(
     path.write_bytes(text.encode(encoding))
     plan = read(path, ReadOptions(units="mm"))
     assert {o.layer: o.kind.value for o in plan.obstacles} == CHINESE
+
+
+@pytest.mark.parametrize("sections_end", ["once", "twice"])
+@pytest.mark.parametrize("claimed", ["ANSI_936", "ANSI_1252"])
+def test_names_survive_into_the_drawing_that_is_written(
+    claimed: str, sections_end: str, tmp_path: Path
+) -> None:
+    text = r12_with(CHINESE).replace("ANSI_1252", claimed)
+    if sections_end == "twice":
+        # damage that is repaired while reading
+        text = text.replace("  0\nENDSEC\n", "  0\nENDSEC\n  0\nENDSEC\n", 1)
+    path = tmp_path / "plan.dxf"
+    path.write_bytes(text.encode("gbk"))
+    plan = read(path, ReadOptions(units="mm"))
+    assert plan.source.encoding == "gbk"
+    out = tmp_path / "out.dxf"
+    out.write_bytes(file_bytes(base_document(plan)))
+    kept = ezdxf.readfile(out)
+    assert {entity.dxf.layer for entity in kept.modelspace()} == {"FLOOR", *CHINESE}
 
 
 @pytest.mark.parametrize("style", ["unicode", "mif"])

@@ -43,10 +43,12 @@ class Decoded:
 
     Attributes:
         text: With all escapes (`\U+67F1`) resolved.
+        encoding: In which the bytes are read, by its name in Python.
         findings: What was noticed about the encoding.
     """
 
     text: str
+    encoding: str
     findings: tuple[Finding, ...]
 
 
@@ -70,8 +72,8 @@ def decoded(content: bytes, table: LayerTable, option: str | None) -> Decoded:
     if has_mif_encoding(text):
         text = decode_mif_to_unicode(text)
     if not names or option is not None:
-        return Decoded(text, ())
-    return Decoded(text, _findings(names, declared, best))
+        return Decoded(text, best, ())
+    return Decoded(text, best, _findings(names, declared, best))
 
 
 def _declared(content: bytes) -> str:

@@ -56,6 +56,7 @@ from satAOI_adapters.dxf_read.curves import (
     beziers_of,
 )
 from satAOI_adapters.dxf_read.expand import Placed
+from satAOI_adapters.dxf_read.finite import not_finite
 from satAOI_geo.errors import DrawingError
 
 LOCAL_DIGITS: Final = 5
@@ -158,7 +159,8 @@ def features_of(placed: Placed, mm_per_unit: float, origin_mm: Point) -> list[Fe
         return [feature for feature in draw(placed, placement) if feature.paths]
     except (ValueError, ArithmeticError, IndexError, AttributeError) as error:
         raise DrawingError(
-            f"{placed.kind} {placed.handle} on layer '{placed.layer}' cannot be read: {error}",
+            f"{placed.label()} cannot be read: {not_finite(placed.entity) or error}; correct it in "
+            "the drawing or delete it",
             layer=placed.layer,
             handle=placed.handle,
         ) from error

@@ -6,6 +6,7 @@ where the caller can supply them; objects of other programs are replaced by the 
 themselves that the drawing carries, if it does.
 """
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
@@ -18,6 +19,7 @@ from ezdxf.lldxf.const import DXFError
 from ezdxf.math import Matrix44, Vec3
 
 from satAOI_adapters.dxf_read import limits
+from satAOI_adapters.dxf_read.finite import not_finite
 from satAOI_geo.errors import DrawingError
 from satAOI_geo.plan import Finding
 
@@ -50,6 +52,12 @@ class Placed:
     def kind(self) -> str:
         """The entity's DXF name."""
         return self.entity.dxftype()
+
+    def label(self) -> str:
+        """The entity as a person can find it in the drawing."""
+        inside = f" in block '{self.blocks[-1]}'" if self.blocks else ""
+        own = self.entity.dxf.get("handle") or self.handle
+        return f"{self.kind} {own} on layer '{self.layer}'{inside}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,6 +264,13 @@ def _levels(
         _hold_count(external, content)
     for offset in _copies(insert):
         matrix = insert.matrix44() * Matrix44.translate(*offset) * level.matrix
+        if not all(map(math.isfinite, matrix)):
+            raise DrawingError(
+                f"the reference {insert.dxf.get('handle')} to block '{name}' on layer '{layer}' "
+                f"cannot be placed: {not_finite(insert)}; correct it in the drawing or delete it",
+                layer=layer,
+                handle=handle,
+            )
         blocks = (*level.blocks, name)
         yield _Level(iter(content), matrix, layer, blocks, handle, document, prefix)
 

@@ -34,6 +34,9 @@ ENTITY: Final = re.compile(
 NUMBER_CODES: Final = (*range(10, 60), *range(110, 150), *range(210, 240))
 """Group codes whose value is a number with a fraction."""
 
+KIND_CODE, HANDLE_CODE, LAYER_CODE = 0, 5, 8
+"""Group codes that begin an entity and name it."""
+
 PAIR: Final = re.compile(r"^[ \t]*(\d+)[ \t]*\n(.*)$", re.MULTILINE)
 """A group code and its value."""
 
@@ -45,11 +48,13 @@ class Opened:
     Attributes:
         document: As ezdxf holds it.
         sha256: Hexadecimal digest of the file's bytes.
+        encoding: Of the names in it, by its name in Python; empty for a binary file.
         findings: What had to be repaired.
     """
 
     document: Drawing
     sha256: str
+    encoding: str = ""
     findings: tuple[Finding, ...] = ()
 
 
@@ -75,7 +80,7 @@ def open_drawing(path: Path, table: LayerTable, encoding: str | None = None) -> 
             lambda: Drawing.load(binary_tags_loader(content, errors="surrogateescape")),
             lambda: recover.read(io.BytesIO(content))[0],
         )
-        return Opened(document, sha256, repairs)
+        return Opened(document, sha256, findings=repairs)
     names = decoded(content, table, encoding)
     text = names.text.replace("\r\n", "\n")
     document, repairs = _loaded(
@@ -86,7 +91,7 @@ def open_drawing(path: Path, table: LayerTable, encoding: str | None = None) -> 
         text,
     )
     _check_complete(document, text, path.name)
-    return Opened(document, sha256, (*names.findings, *repairs))
+    return Opened(document, sha256, names.encoding, (*names.findings, *repairs))
 
 
 def _content(path: Path) -> bytes:
@@ -161,18 +166,32 @@ def _check_numbers(text: str, name: str) -> None:
     Raises:
         UnreadableError: If there is one; a repair would cut `1,5` down to 1.
     """
+    kind = handle = layer = ""
     for pair in PAIR.finditer(text):
-        if int(pair[1]) not in NUMBER_CODES:
-            continue
-        try:
-            float(pair[2])
-        except ValueError:
+        code, value = int(pair[1]), pair[2].strip()
+        if code == KIND_CODE:
+            kind, handle, layer = value, "", ""
+        elif code == HANDLE_CODE:
+            handle = value
+        elif code == LAYER_CODE:
+            layer = value
+        elif code in NUMBER_CODES and not _is_number(value):
             line = text.count("\n", 0, pair.start(2)) + 1
-            hint = "; export it with decimal points" if "," in pair[2] else ""
+            hint = "; export it with decimal points" if "," in value else ""
             raise UnreadableError(
-                f"'{name}' is damaged: line {line} should be a number and is "
-                f"'{pair[2].strip()[:40]}'{hint}"
-            ) from None
+                f"'{name}' is damaged: line {line}, group code {code} of {kind} {handle} on layer "
+                f"'{layer}', should be a number and is '{value[:40]}'{hint}",
+                layer=layer,
+                handle=handle,
+            )
+
+
+def _is_number(value: str) -> bool:
+    try:
+        float(value)
+    except ValueError:
+        return False
+    return True
 
 
 def _check_complete(document: Drawing, text: str, name: str) -> None:

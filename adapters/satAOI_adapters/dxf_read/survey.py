@@ -40,6 +40,7 @@ class Survey:
     Attributes:
         path: The file.
         sha256: Digest of its bytes.
+        encoding: Of the names in it; empty for a binary file.
         document: As ezdxf holds it.
         seen: Visible entities that draw lines or areas, with their meaning.
         expansion: All that the drawing shows, hides or lacks.
@@ -54,6 +55,7 @@ class Survey:
 
     path: Path
     sha256: str
+    encoding: str
     document: Drawing
     seen: tuple[Seen, ...]
     expansion: Expansion
@@ -87,7 +89,14 @@ class Survey:
         Raises:
             UnitError: If the unit is not known.
         """
-        return Source(str(self.path), self.sha256, "dxf", self.unit.name, self.unit.source)
+        return Source(
+            str(self.path),
+            self.sha256,
+            "dxf",
+            self.unit.name,
+            self.unit.source,
+            encoding=self.encoding,
+        )
 
     def frame(self) -> Frame:
         """A frame of whole millimetres in the midst of what is drawn.
@@ -172,6 +181,7 @@ def survey(path: Path, options: ReadOptions) -> Survey:
     return Survey(
         path=path,
         sha256=opened.sha256,
+        encoding=opened.encoding,
         document=opened.document,
         seen=tuple({id(entity): entity for entity, _ in near}.values()),
         expansion=expansion,

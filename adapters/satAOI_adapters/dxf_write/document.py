@@ -86,11 +86,18 @@ def _opened(source: Source) -> Drawing:
     if source.sha256 and sha256(data).hexdigest() != source.sha256:
         raise UnreadableError(f"'{path}' was changed while it was worked on; run again")
     with contextlib.suppress(*DAMAGED):
-        return ezdxf.readfile(path)
+        return ezdxf.readfile(path, encoding=source.encoding or None)
     try:
-        return recover.readfile(path)[0]
+        return recover.read(io.BytesIO(_escaped(data, source.encoding)))[0]
     except DAMAGED as error:
         raise UnreadableError(f"'{path}' cannot be loaded to draw into: {error}") from error
+
+
+def _escaped(data: bytes, encoding: str) -> bytes:
+    """A text drawing with all but ASCII as escapes, which no header can make mean others."""
+    if not encoding:
+        return data
+    return data.decode(encoding, "surrogateescape").encode("ascii", "dxfreplace")
 
 
 def _drawn(plan: FloorPlan) -> Drawing:
