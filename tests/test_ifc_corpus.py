@@ -75,7 +75,8 @@ def test_floors_and_clear_distances_are_those_that_others_measured(case: Case) -
 
 @pytest.mark.parametrize("model", [case.model for case in CASES], ids=lambda name: name[:3])
 def test_exact_bodies_agree_with_the_kernels_meshes(model: str) -> None:
-    opened, _ = open_model(MODELS / f"{model}.ifc")
+    path = MODELS / f"{model}.ifc"
+    opened = open_model(path, path).model
     units, _ = units_of(opened, None)
     site = Site.of(opened, units, Choice(), Flaws({}), lambda _: None)
     view = View(1.0, 1200.0, outward=True)

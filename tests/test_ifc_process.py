@@ -1,6 +1,7 @@
 """The geometry process: whatever a model does to it is answered in a line."""
 
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -21,9 +22,9 @@ CORPUS = Path(__file__).parents[2] / "shared" / "corpus"
 needs_corpus = pytest.mark.skipif(not CORPUS.is_dir(), reason="the corpus is not here")
 
 
-def hall(folder: Path) -> Path:
+def hall(folder: Path, schema: str = "IFC4") -> Path:
     """Two storeys, a slab on each, a wall on the lower one."""
-    pen = Pen()
+    pen = Pen(schema)
     standing = pen.product("IfcWall", pen.box((500.0, 500.0, 0.0), (5500.0, 700.0, 3000.0)))
     pen.contain(pen.storey("Ground"), pen.slab(6000.0, 4000.0), standing)
     pen.contain(pen.storey("First", 3000.0), pen.slab(6000.0, 4000.0, top_mm=3000.0))
@@ -33,7 +34,7 @@ def hall(folder: Path) -> Path:
 def fragile(path: str, monkeypatch: pytest.MonkeyPatch, *, timeout_s: float = 60.0) -> Inspected:
     monkeypatch.setattr(process, "WORKER", "tests.fragile_worker")
     monkeypatch.setattr(process, "ELEMENT_S", 2.0)
-    request = Request(path=path, options=IfcOptions(), file_mb=0.0, memory_mb=1000)
+    request = Request(path=path, parsed=path, options=IfcOptions(), file_mb=0.0, memory_mb=1000)
     return process.answered(request, Inspected, timeout_s=timeout_s)
 
 
@@ -76,7 +77,9 @@ def test_a_model_that_ends_the_process_again_and_again_is_refused(
 
 def test_a_model_that_cannot_even_be_opened_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(process, "WORKER", "satAOI_adapters.no_such_module")
-    request = Request(path="m.ifc", options=IfcOptions(), file_mb=0.0, memory_mb=1000)
+    request = Request(
+        path="m.ifc", parsed="m.ifc", options=IfcOptions(), file_mb=0.0, memory_mb=1000
+    )
     with pytest.raises(UnreadableError, match="ends the process that opens it"):
         process.answered(request, Inspected, timeout_s=60.0)
 
@@ -112,6 +115,7 @@ def test_no_process_is_left_behind(monkeypatch: pytest.MonkeyPatch) -> None:
         (b"0\nSECTION\n2\nHEADER\n", "does not begin with ISO-10303-21"),
         (b"ISO-10303-21;HEADER;ENDSEC;END-ISO-10303-21;", "names no schema"),
         (b"ISO-10303-21;FILE_SCHEMA(('IFC2X_FINAL'));END-ISO-10303-21;", "schema IFC2X_FINAL"),
+        (b"ISO-10303-21;FILE_SCHEMA(('IFC4X3_RC2'));END-ISO-10303-21;", "schema IFC4X3_RC2"),
         (b"ISO-10303-21;FILE_SCHEMA(('IFC4'));DATA;#1=IFCWALL(", "was cut off"),
     ],
 )
@@ -147,6 +151,39 @@ def test_names_and_comments_that_look_like_numbers_are_no_numbers() -> None:
     assert list(text.ids_with_bad_numbers(data)) == [2]
 
 
+@pytest.mark.parametrize(
+    ("schema", "written"),
+    [("IFC4X3", "IFC4X3"), ("IFC4X3", "ifc4x3_add1"), ("IFC4", "IFC4X2"), ("IFC2X3", "IFC2X3_TC1")],
+)
+def test_a_schema_by_another_name_is_read_and_told_of(
+    tmp_path: Path, schema: str, written: str
+) -> None:
+    path = hall(tmp_path, schema)
+    plain = read(path, IfcOptions(storey="Ground"))
+    text = path.read_text()
+    path.write_text(re.sub(r"(FILE_SCHEMA\(\(')\w+", rf"\g<1>{written}", text))
+    plan = read(path, IfcOptions(storey="Ground"))
+    assert (plan.floor, plan.obstacles) == (plain.floor, plain.obstacles)
+    assert [finding.code for finding in plan.findings] == ["schema-alias"]
+    assert f"the schema {written.upper()} was read as {schema}" in plan.findings[0].message
+    assert inspect(path, IfcOptions()).findings == plan.findings
+
+
+def test_a_byte_order_mark_does_no_harm(tmp_path: Path) -> None:
+    path = hall(tmp_path)
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    assert not read(path, IfcOptions(storey="Ground")).findings
+
+
+def test_classes_that_the_schema_lacks_are_told_of(tmp_path: Path) -> None:
+    path = hall(tmp_path)
+    strange = "#901=IFCKERB($);\n#902=IFCKERB($);\n#903=IFCALIGNMENT($);\nENDSEC;\nEND-ISO"
+    path.write_text(path.read_text().replace("ENDSEC;\nEND-ISO", strange))
+    (finding,) = read(path, IfcOptions(storey="Ground")).findings
+    assert finding.code == "unknown-class"
+    assert finding.message.endswith("that IFC4 lacks were left out: IFCALIGNMENT, IFCKERB")
+
+
 @needs_corpus
 @pytest.mark.parametrize(
     ("name", "error", "message"),
@@ -166,7 +203,7 @@ def test_names_and_comments_that_look_like_numbers_are_no_numbers() -> None:
         ("real_not_a_building_walls_spell_YAY", EmptyPlanError, "enclose nothing"),
         ("real_opens_but_empty", EmptyPlanError, "no element with geometry"),
         ("real_project_only", EmptyPlanError, "no element with geometry"),
-        ("real_schema_name_ifc4x3_add1", UnreadableError, "schema"),
+        ("real_schema_name_ifc4x3_add1", EmptyPlanError, "no element with geometry"),
         ("real_sewer_pipes_no_storey", EmptyPlanError, "no element with geometry"),
         ("real_single_brep_wall", EmptyPlanError, "enclose nothing"),
         ("real_sjis_bytes_storey_names", InputError, "choose one with --storey"),

@@ -30,7 +30,14 @@ def plan_in(path: Path, **options: object) -> FloorPlan:
     answers = io.StringIO()
     chosen = IfcOptions(**options)
     bad_ids = frozenset(text.ids_with_bad_numbers(path.read_bytes()))
-    request = Request(path=str(path), options=chosen, file_mb=0.0, memory_mb=0, bad_ids=bad_ids)
+    request = Request(
+        path=str(path),
+        parsed=str(path),
+        options=chosen,
+        file_mb=0.0,
+        memory_mb=0,
+        bad_ids=bad_ids,
+    )
     Worker(request, answers).run()
     answer = ANSWER.validate_json(answers.getvalue().splitlines()[-1])
     if isinstance(answer, Failed):

@@ -10,7 +10,7 @@ import ifcopenshell.validate
 import numpy as np
 import pytest
 
-from satAOI_adapters import ifc_write
+from satAOI_adapters import ifc_write, read_plan
 from satAOI_geo.errors import InputError, UnreadableError
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.search import Settings
@@ -174,6 +174,16 @@ def test_the_same_result_gives_the_same_bytes(
     twin = folder / "twin.ifc"
     ifc_write.write(twin, result)
     assert twin.read_bytes() == target.read_bytes()
+
+
+def test_a_model_of_another_spelling_keeps_it(tmp_path: Path) -> None:
+    source = hall("IFC4X3", "mm").save(tmp_path)
+    spelled = source.read_bytes().replace(b"IFC4X3_ADD2", b"IFC4X3").replace(b"Ground", b"Gr\xfcn")
+    source.write_bytes(spelled)
+    target = tmp_path / "aoi.ifc"
+    ifc_write.write(target, area_of_interest(read_plan(source), settings=COARSE))
+    assert ifc_write.BLOCK.sub(b"", target.read_bytes()) == spelled
+    assert {finding.code for finding in read_plan(target).findings} == {"schema-alias", "encoding"}
 
 
 def test_a_plan_that_is_no_model_is_refused(tmp_path: Path) -> None:

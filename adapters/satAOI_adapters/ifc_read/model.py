@@ -12,6 +12,7 @@ from ifcopenshell import entity_instance, ifcopenshell_wrapper
 from ifcopenshell.util.unit import calculate_unit_scale
 
 from satAOI_adapters.ifc_read.classes import Choice, wholes_of
+from satAOI_adapters.ifc_read.names import printable
 from satAOI_adapters.ifc_read.placement import PlacementError, world_matrix
 from satAOI_adapters.ifc_read.profiles import Units
 from satAOI_geo.errors import EmptyPlanError, InputError, UnitError, UnreadableError
@@ -49,11 +50,27 @@ class Storey:
     counts: dict[str, int]
 
 
-def open_model(path: Path) -> tuple[ifcopenshell.file, frozenset[int]]:
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """A model that was parsed.
+
+    Attributes:
+        model: What the parser made of it.
+        dangling: Ids of entities that refer to others which the file does not hold.
+        findings: What it left out.
+    """
+
+    model: ifcopenshell.file
+    dangling: frozenset[int]
+    findings: tuple[Finding, ...]
+
+
+def open_model(path: Path, parsed: Path) -> Opened:
     """The model in a file that was already checked to be whole.
 
-    Returns:
-        The model, and the ids of entities that refer to others which the file does not hold.
+    Args:
+        path: The model.
+        parsed: Where it is parsed, as in `parsable`.
 
     Raises:
         UnreadableError: If it cannot be parsed.
@@ -62,7 +79,7 @@ def open_model(path: Path) -> tuple[ifcopenshell.file, frozenset[int]]:
     log = ifcopenshell_wrapper.logger()
     log.output_format(log.FMT_INMEMORY)
     try:
-        model = ifcopenshell.open(path, format=".ifc", logger=log)
+        model = ifcopenshell.open(parsed, format=".ifc", logger=log)
     except (ifcopenshell.Error, OSError, RuntimeError) as error:
         reasons = [m.message for m in log.log_messages() if m.severity >= log.LOG_ERROR]
         raise UnreadableError(
@@ -73,12 +90,33 @@ def open_model(path: Path) -> tuple[ifcopenshell.file, frozenset[int]]:
         raise EmptyPlanError(
             f"'{path}' holds no element with geometry; export the model with its walls and slabs"
         )
-    dangling = (DANGLING.search(message.message) for message in log.log_messages())
-    return model, frozenset(int(match[1]) for match in dangling if match)
+    said = [message.message for message in log.log_messages()]
+    dangling = (DANGLING.search(message) for message in said)
+    unknown = (UNKNOWN.search(message) for message in said)
+    return Opened(
+        model,
+        dangling=frozenset(int(match[1]) for match in dangling if match),
+        findings=_unknown_classes(model.schema_identifier, {m[1] for m in unknown if m}),
+    )
 
 
 DANGLING: Final = re.compile(r"#\d+ used by instance #(\d+) .*not found")
 """How the parser says that an entity refers to nothing."""
+
+UNKNOWN: Final = re.compile(r"Entity with name '(IFC\w+)' not found in schema")
+"""How it says that it leaves out the entities of a class."""
+
+
+def _unknown_classes(schema: str, names: set[str]) -> tuple[Finding, ...]:
+    if not names:
+        return ()
+    return (
+        Finding(
+            "unknown-class",
+            f"entities of classes that {schema} lacks were left out: {', '.join(sorted(names))}",
+            "export the model in the schema that its classes are from if something is missing",
+        ),
+    )
 
 
 def units_of(model: ifcopenshell.file, name: str | None) -> tuple[Units, str]:
@@ -184,19 +222,15 @@ _UNPLACED: Final = Finding(
 
 
 def _contradiction(storey: entity_instance, attribute_mm: float, used_mm: float) -> Finding:
+    name = printable(storey.Name or "")
     return Finding(
         "storey-elevation",
-        f"storey '{storey.Name or ''}' is placed at {used_mm:g} mm but states an Elevation of "
+        f"storey '{name}' is placed at {used_mm:g} mm but states an Elevation of "
         f"{attribute_mm:g} mm; the placement was used",
         "give --floor-z if the other height is meant",
         layer="IfcBuildingStorey",
         handle=handle_of(storey),
     )
-
-
-def printable(name: str) -> str:
-    """A name without control characters, which a wrong code page leaves behind."""
-    return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in name)
 
 
 def _placed_mm(

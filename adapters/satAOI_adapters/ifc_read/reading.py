@@ -14,6 +14,7 @@ from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.ifc_read import text
 from satAOI_adapters.ifc_read.options import IfcOptions
+from satAOI_adapters.ifc_read.parsable import alias_findings, has_raw_names, parsable
 from satAOI_adapters.ifc_read.process import answered
 from satAOI_adapters.ifc_read.records import Inspected, ModelRecord, Read, Request, StoreyRecord
 from satAOI_geo.plan import (
@@ -72,9 +73,12 @@ def read(path: Path, options: IfcOptions, progress: Progress | None = None) -> F
         DrawingError: If the model cannot be used as it is.
         LimitError: If it takes more time or memory than allowed.
     """
-    request, data = _request(path, options, only_inspect=False)
-    answer = answered(request, Read, timeout_s=options.timeout_s, progress=progress)
-    return plan_of(answer, _source(path, data, answer.model, options))
+    data = text.read_bytes(path)
+    with parsable(path, data) as parsed:
+        request = _request(path, parsed, data, options)
+        answer = answered(request, Read, timeout_s=options.timeout_s, progress=progress)
+    plan = plan_of(answer, _source(path, data, answer.model, options))
+    return replace(plan, findings=(*alias_findings(data), *plan.findings))
 
 
 def inspect(path: Path, options: IfcOptions) -> Inspection:
@@ -84,33 +88,37 @@ def inspect(path: Path, options: IfcOptions) -> Inspection:
         InputError: If the unit given is unknown.
         DrawingError: If the model cannot be used as it is.
     """
-    request, data = _request(path, options, only_inspect=True)
-    model = answered(request, Inspected, timeout_s=options.timeout_s).model
+    data = text.read_bytes(path)
+    with parsable(path, data) as parsed:
+        request = _request(path, parsed, data, options, only_inspect=True)
+        model = answered(request, Inspected, timeout_s=options.timeout_s).model
     return Inspection(
         source=_source(path, data, model, options),
         schema_name=model.schema_name,
         mm_per_unit=model.mm_per_unit,
         storeys=tuple(model.storeys),
         classes=model.classes,
-        findings=tuple(record.finding() for record in model.findings),
+        findings=(*alias_findings(data), *(record.finding() for record in model.findings)),
     )
 
 
-def _request(path: Path, options: IfcOptions, *, only_inspect: bool) -> tuple[Request, bytes]:
-    data = text.read_bytes(path)
+def _request(
+    path: Path, parsed: Path, data: bytes, options: IfcOptions, *, only_inspect: bool = False
+) -> Request:
     file_mb = len(data) / BYTES_PER_MB
     memory_mb = options.memory_mb
     if memory_mb is None:
         memory_mb = math.ceil(BASE_MB + MB_PER_FILE_MB * file_mb)
-    request = Request(
+    return Request(
         path=str(path),
+        parsed=str(parsed),
         options=options,
         file_mb=file_mb,
         memory_mb=memory_mb,
         bad_ids=frozenset(text.ids_with_bad_numbers(data)),
+        raw_names=has_raw_names(data),
         only_inspect=only_inspect,
     )
-    return request, data
 
 
 def _source(path: Path, data: bytes, model: ModelRecord, options: IfcOptions) -> Source:

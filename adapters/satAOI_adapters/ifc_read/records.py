@@ -27,19 +27,23 @@ class Request(Record):
 
     Attributes:
         path: The model.
+        parsed: Where it is parsed: the model itself, or a copy as in `parsable`.
         options: What the user chose.
         file_mb: Size of the file.
         memory_mb: Most address space that the process may take.
         bad_ids: Entities that hold numbers which are none.
+        raw_names: Whether names hold bytes that no encoding is declared for.
         skip: GlobalIds of elements that ended an earlier run.
         only_inspect: Whether storeys are enough.
     """
 
     path: str
+    parsed: str
     options: IfcOptions
     file_mb: float
     memory_mb: int
     bad_ids: frozenset[int] = frozenset()
+    raw_names: bool = False
     skip: frozenset[str] = frozenset()
     only_inspect: bool = False
 

@@ -15,7 +15,8 @@ from satAOI_adapters.ifc_read.bodies import MALFORMED, Body, BodyReader, Extent,
 from satAOI_adapters.ifc_read.classes import Choice, blocks
 from satAOI_adapters.ifc_read.flaws import Flaws
 from satAOI_adapters.ifc_read.floor import Top, tops_of
-from satAOI_adapters.ifc_read.model import body_items, candidates, handle_of, printable
+from satAOI_adapters.ifc_read.model import body_items, candidates, handle_of
+from satAOI_adapters.ifc_read.names import printable
 from satAOI_adapters.ifc_read.placement import world_matrix
 from satAOI_adapters.ifc_read.prisms import View
 from satAOI_adapters.ifc_read.profiles import Units

@@ -13,6 +13,23 @@ from satAOI_geo.errors import LimitError, UnreadableError
 
 MAX_FILE_BYTES: Final = 2_000_000_000
 SCHEMAS: Final = ("IFC2X3", "IFC4", "IFC4X3_ADD2")
+"""Schemas that the parser knows, by the names that it knows."""
+
+ALIASES: Final = {
+    "IFC2X3_TC1": "IFC2X3",
+    "IFC2X3_FINAL": "IFC2X3",
+    "IFC4_ADD1": "IFC4",
+    "IFC4_ADD2": "IFC4",
+    "IFC4_ADD2_TC1": "IFC4",
+    "IFC4X1": "IFC4",
+    "IFC4X2": "IFC4",
+    "IFC4X3": "IFC4X3_ADD2",
+    "IFC4X3_TC1": "IFC4X3_ADD2",
+    "IFC4X3_ADD1": "IFC4X3_ADD2",
+}
+"""Other names of these schemas, earlier editions, and drafts that only add to them: what they add
+is told of as unknown. Other drafts (IFC4X3_RC1 and so on) call the same things differently."""
+
 TRAILER: Final = b"END-ISO-10303-21"
 TAIL_BYTES: Final = 4096
 
@@ -83,12 +100,17 @@ def _check_schema(path: Path, data: bytes) -> None:
     match = SCHEMA_PATTERN.search(data)
     if match is None:
         raise UnreadableError(f"'{path}' names no schema (FILE_SCHEMA); export it again")
-    schema = match[1].decode("latin-1").upper()
-    if schema not in SCHEMAS:
+    schema = schema_in(match)
+    if schema not in SCHEMAS and schema not in ALIASES:
         raise UnreadableError(
             f"'{path}' uses schema {schema}, which cannot be read; export it as "
             f"{', '.join(SCHEMAS[:-1])} or {SCHEMAS[-1]}"
         )
+
+
+def schema_in(match: re.Match[bytes]) -> str:
+    """The schema's name, of a match of `SCHEMA_PATTERN`."""
+    return match[1].decode("latin-1").strip().upper()
 
 
 def ids_with_bad_numbers(data: bytes) -> Iterator[int]:

@@ -24,6 +24,7 @@ from satAOI_adapters.ifc_read.model import (
     storeys_of,
     units_of,
 )
+from satAOI_adapters.ifc_read.names import respell_names
 from satAOI_adapters.ifc_read.profiles import Units
 from satAOI_adapters.ifc_read.records import (
     Begun,
@@ -76,15 +77,18 @@ class Worker:
 
     def _answer(self) -> Record:
         request, options = self._request, self._request.options
-        model, dangling = open_model(Path(request.path))
-        broken = dict.fromkeys(dangling, "it refers to something that the file lacks")
+        opened = open_model(Path(request.path), Path(request.parsed))
+        model = opened.model
+        broken = dict.fromkeys(opened.dangling, "it refers to something that the file lacks")
         broken |= dict.fromkeys(request.bad_ids, "it holds a number that is none")
         flaws = Flaws.of(model, broken, request.skip)
         units, unit = units_of(model, options.units)
         choice = chosen_classes(
             model.schema_identifier, options.with_classes, options.without_classes
         )
-        storeys, findings = storeys_of(model, units.mm, flaws.in_product)
+        respelled = respell_names(model, raw=request.raw_names)
+        storeys, odd_heights = storeys_of(model, units.mm, flaws.in_product)
+        findings = [*opened.findings, *respelled, *odd_heights]
         described = _model_record(model, units, unit, storeys, findings)
         if request.only_inspect:
             return Inspected(model=described)

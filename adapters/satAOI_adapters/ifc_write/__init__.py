@@ -52,11 +52,13 @@ def write(path: Path, result: Result) -> None:
     model = Path(source.path)
     refuse_unfit_target(path, [model])
     data = _unchanged(model, source.sha256)
+    from satAOI_adapters.ifc_read.parsable import parsable
     from satAOI_adapters.ifc_write.zones import lines_of
 
     bare = BLOCK.sub(b"", data)
     *_, end = END_OF_DATA.finditer(bare)
-    added = "\n".join(lines_of(model, result)).encode("ascii")
+    with parsable(model, data) as parsed:
+        added = "\n".join(lines_of(parsed, result)).encode("ascii")
     with written_whole(path, never_over=[model]) as stream:
         stream.write(bare[: end.start()] + BEGIN + added + b"\n" + END + bare[end.start() :])
 

@@ -38,7 +38,7 @@ def lines_of(path: Path, result: Result) -> list[str]:
     """The added entities, as lines of a STEP file without line ends.
 
     Args:
-        path: The model they are added to.
+        path: The model they are added to, where it can be parsed.
         result: The area of interest.
     """
     writer = _Writer(ifcopenshell.open(path, format=".ifc"), result)
