@@ -1,6 +1,7 @@
 """Pictures of what was understood: colours at known places, numbers, frames, words."""
 
 import io
+import math
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,8 +20,8 @@ from satAOI_adapters.plan_picture.fonts import spelt, wrapped
 from satAOI_adapters.plan_picture.key import TOLD_OF_A_SORT, told
 from satAOI_adapters.plan_picture.layout import page_of
 from satAOI_adapters.plan_picture.page import Page, Strokes, Text
-from satAOI_adapters.plan_picture.sheet import Sheet, scale_bar
-from satAOI_adapters.plan_picture.style import BLUE, COLOURS, FLOOR_FILL, RED
+from satAOI_adapters.plan_picture.sheet import Sheet, place_marks, scale_bar
+from satAOI_adapters.plan_picture.style import BADGE, BLUE, COLOURS, FLOOR_FILL, RED
 from satAOI_geo import DrawingError, InputError
 from satAOI_geo.plan import Finding, FloorPlan, Kind, Obstacle, Source
 from tests.drawings import drawing, rectangle
@@ -133,6 +134,15 @@ def test_of_many_findings_of_a_sort_the_first_are_numbered_and_all_are_marked() 
     assert [line.label for line in lines] == ["1", "2", "3", "", ""]
     assert sum(len(line.places_mm) for line in lines) == 9
     assert lines[TOLD_OF_A_SORT].text == "and 6 more of 'gap'"
+
+
+def test_the_number_of_a_finding_off_the_sheet_stands_at_its_rim() -> None:
+    sheet = Sheet.over((0, 0, 9000, 9000), x=0, y=0, height=1000)
+    right = sheet.width
+    marks = list(place_marks([((99_000.0, 4500.0), "7")], sheet))
+    (number,) = (mark for mark in marks if isinstance(mark, Text))
+    assert number.text == "7"
+    assert math.hypot(number.x - right, number.y - sheet.height / 2) < 4 * BADGE
 
 
 def test_of_several_plans_each_is_framed_with_the_number_that_chooses_it(tmp_path: Path) -> None:

@@ -1,6 +1,6 @@
 """The key beside the plan: what the colours mean, and what was found."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
 from typing import Final
@@ -8,7 +8,7 @@ from typing import Final
 import shapely
 from shapely.geometry import LineString, box
 
-from satAOI_adapters.inspected import Figures, Inspected
+from satAOI_adapters.inspected import Figures, Inspected, Sketch
 from satAOI_adapters.plan_picture.fonts import wrapped
 from satAOI_adapters.plan_picture.page import Area, Disc, Mark, Strokes, Text, printable
 from satAOI_adapters.plan_picture.sheet import badge, start_sign
@@ -17,12 +17,14 @@ from satAOI_adapters.plan_picture.style import (
     BLACK,
     BLUE,
     COLOURS,
+    DOT,
     FLOOR_EDGE,
     FLOOR_FILL,
     GREY,
     KEY_WIDTH,
     LARGE,
     LINE,
+    MEDIUM,
     NO_OBSTACLE,
     RED,
     SMALL,
@@ -38,6 +40,9 @@ TOLD_OF_A_SORT: Final = 3
 
 INDENT: Final = 36.0
 """From the signs of the key to their texts."""
+
+NONE: Final = "none"
+"""Said of a kind of which there is nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,57 +105,63 @@ class Key:
 
     def write(self, found: Inspected[Figures], findings: Sequence[Told]) -> None:
         """Write the whole key."""
-        self._colours(found)
+        source = found.figures.source
+        self._entry((), f"drawn in {source.unit} ({source.unit_source})", GREY)
+        if found.plan is None:
+            self._kinds({kind: str(kind) for kind in COLOURS})
+        else:
+            self._floor(found.plan)
+            self._kinds({kind: f"{kind}: {_amount(found.plan, kind)}" for kind in COLOURS})
+        if found.sketch is not None:
+            self._sketch(found.sketch, faded=found.plan is not None)
         if found.error is not None:
             self._heading("Cannot be used as it is")
-            self._sign(badge(self.x + BADGE, self.y, "!", RED))
-            self._paragraph(printable(str(found.error)), RED)
+            self._entry(badge(self.x + BADGE, self.y, "!", RED), printable(str(found.error)), RED)
         self._heading("Findings" if findings else "No findings")
         for line in findings:
-            if line.label:
-                self._sign(badge(self.x + BADGE, self.y, line.label, RED))
-            elif line.places_mm:
-                self._sign([Disc(self.x + BADGE, self.y, 2.5, RED, WHITE)])
-            else:
-                self._sign([Text(self.x + BADGE, self.y, "–", SMALL, BLACK, centred=True)])
-            self._paragraph(line.text)
+            self._entry(self._sign_of(line), line.text)
 
-    def _colours(self, found: Inspected[Figures]) -> None:
-        plan, source = found.plan, found.figures.source
-        self._paragraph(f"drawn in {source.unit} ({source.unit_source})", GREY)
-        if plan is not None:
-            area_m2 = plan.floor.area / MM2_PER_M2
-            self._swatch(FLOOR_FILL, FLOOR_EDGE)
-            self._paragraph(f"floor: {area_m2:.2f} m² ({plan.floor_source})")
-        for kind, colour in COLOURS.items():
-            self._swatch(colour, colour)
-            said = "" if plan is None else f": {_amount(plan, kind)}"
-            self._paragraph(f"{kind}{said}", GREY if said == ": none" else BLACK)
-        if found.sketch is not None:
-            line = LineString([(self.x, self.y), (self.x + 2 * BADGE, self.y)])
-            self._sign([Strokes((line,), NO_OBSTACLE, THICK)])
-            paler = "" if plan is None else "; paler colours: left out of this plan"
-            self._paragraph(f"drawn, and no obstacle{paler}")
-            if len(found.sketch.parts_mm) > 1:
-                self._sign(badge(self.x + BADGE, self.y, "N", BLUE))
-                self._paragraph("part that may be a plan, for --plan N")
-        if plan is not None and plan.start_mm is not None:
-            self._sign(start_sign(self.x + BADGE, self.y))
-            self._paragraph("start, as marked in the drawing")
+    def _floor(self, plan: FloorPlan) -> None:
+        area_m2 = plan.floor.area / MM2_PER_M2
+        self._entry(
+            self._swatch(FLOOR_FILL, FLOOR_EDGE), f"floor: {area_m2:.2f} m² ({plan.floor_source})"
+        )
+        if plan.start_mm is not None:
+            self._entry(start_sign(self.x + BADGE, self.y), "start, as marked in the drawing")
 
-    def _swatch(self, fill: str, stroke: str) -> None:
-        shape = box(self.x, self.y - 7, self.x + 2 * BADGE, self.y + 7)
-        self._sign([Area(shape, fill, stroke, THIN)])
+    def _kinds(self, texts: Mapping[Kind, str]) -> None:
+        for kind, text in texts.items():
+            absent = text.endswith(NONE)
+            self._entry(self._swatch(COLOURS[kind], COLOURS[kind]), text, GREY if absent else BLACK)
+
+    def _sketch(self, sketch: Sketch, *, faded: bool) -> None:
+        line = LineString([(self.x, self.y), (self.x + 2 * BADGE, self.y)])
+        paler = "; paler colours: left out of this plan" if faded else ""
+        self._entry([Strokes((line,), NO_OBSTACLE, THICK)], f"drawn, and no obstacle{paler}")
+        if len(sketch.parts_mm) > 1:
+            number = badge(self.x + BADGE, self.y, "N", BLUE)
+            self._entry(number, "part that may be a plan, for --plan N")
+
+    def _sign_of(self, line: Told) -> Iterable[Mark]:
+        """The number of a finding, a dot for several places, a dash for none."""
+        x = self.x + BADGE
+        if line.label:
+            return badge(x, self.y, line.label, RED)
+        if line.places_mm:
+            return [Disc(x, self.y, DOT, RED, WHITE)]
+        return [Text(x, self.y, "–", SMALL, BLACK, centred=True)]
+
+    def _swatch(self, fill: str, stroke: str) -> list[Mark]:
+        shape = box(self.x, self.y - SMALL / 2, self.x + 2 * BADGE, self.y + SMALL / 2)
+        return [Area(shape, fill, stroke, THIN)]
 
     def _heading(self, text: str) -> None:
         self.y += LARGE / 2
-        self.marks.append(Text(self.x, self.y, text, LARGE - 4, BLACK))
+        self.marks.append(Text(self.x, self.y, text, MEDIUM, BLACK))
         self.y += LARGE * LINE
 
-    def _sign(self, marks: Iterable[Mark]) -> None:
-        self.marks.extend(marks)
-
-    def _paragraph(self, text: str, colour: str = BLACK) -> None:
+    def _entry(self, sign: Iterable[Mark], text: str, colour: str = BLACK) -> None:
+        self.marks.extend(sign)
         for line in wrapped(text, self.face, SMALL, KEY_WIDTH - INDENT):
             self.marks.append(Text(self.x + INDENT, self.y, line, SMALL, colour))
             self.y += SMALL * LINE
@@ -161,7 +172,7 @@ def _amount(plan: FloorPlan, kind: Kind) -> str:
     """How many obstacles of a kind there are, and how much of the floor they cover."""
     regions = [obstacle.region() for obstacle in plan.obstacles if obstacle.kind is kind]
     if not regions:
-        return "none"
+        return NONE
     area_m2 = shapely.union_all(regions).intersection(plan.floor).area / MM2_PER_M2
     pieces = "1 piece" if len(regions) == 1 else f"{len(regions)} pieces"
     return f"{pieces}, {area_m2:.2f} m² of the floor"

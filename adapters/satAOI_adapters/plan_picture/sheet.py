@@ -17,6 +17,7 @@ from satAOI_adapters.plan_picture.style import (
     BLACK,
     BLUE,
     COLOURS,
+    DOT,
     FLOOR_EDGE,
     FLOOR_FILL,
     GREEN,
@@ -124,7 +125,7 @@ def plan_marks(found: Inspected[Figures], sheet: Sheet) -> Iterator[Mark]:
                 if obstacle.kind is kind:
                     yield from _obstacle(obstacle, plan.frame, sheet)
     if plan is not None and plan.start_mm is not None:
-        yield from _start(plan, plan.start_mm, sheet)
+        yield from start_sign(*sheet.spots(plan.frame.to_drawing_mm(plan.start_mm)).tolist())
 
 
 def floor_bounds_mm(plan: FloorPlan) -> Bounds:
@@ -175,14 +176,8 @@ def part_marks(sketch: Sketch, sheet: Sheet) -> Iterator[Mark]:
         yield from badge(*spot, str(number), BLUE)
 
 
-def _start(plan: FloorPlan, start_mm: tuple[float, float], sheet: Sheet) -> Iterator[Mark]:
-    """A ring with a cross where the robot is set down."""
-    x, y = sheet.spots(plan.frame.to_drawing_mm(start_mm)).tolist()
-    yield from start_sign(x, y)
-
-
 def start_sign(x: float, y: float) -> Iterator[Mark]:
-    """The mark of a start."""
+    """A ring with a cross, where the robot is set down."""
     reach = 1.5 * BADGE
     yield Disc(x, y, BADGE, WHITE, GREEN, 2 * THICK)
     cross = (
@@ -201,19 +196,23 @@ def badge(x: float, y: float, text: str, colour: str) -> Iterator[Mark]:
 def place_marks(
     places_mm: Iterable[tuple[tuple[float, float], str]], sheet: Sheet
 ) -> Iterator[Mark]:
-    """A dot at each place, given in the drawing's axes, and its number, if any, beside it."""
+    """A dot at each place, given in the drawing's axes, and its number, if any, beside it.
+
+    The number of a place off the sheet stands at the rim where it is nearest.
+    """
+    left, top, right, bottom = sheet.rim.bounds
     taken: list[tuple[float, float]] = []
     for at_mm, label in places_mm:
         x, y = sheet.spots(np.array(at_mm)).tolist()
-        if not sheet.rim.covers(shapely.Point(x, y)):
-            continue
+        spot = (min(max(x, left), right), min(max(y, top), bottom))
         if label:
             # the badge must not cover the place itself
-            badge_x, badge_y = _free_spot(x, y, [*taken, (x, y)])
-            taken.append((badge_x, badge_y))
-            yield Strokes((LineString([(x, y), (badge_x, badge_y)]),), RED, THIN)
-            yield from badge(badge_x, badge_y, label, RED)
-        yield Disc(x, y, 2.5, RED, WHITE)
+            beside = _free_spot(*spot, [*taken, spot])
+            taken.append(beside)
+            yield Strokes((LineString([spot, beside]),), RED, THIN)
+            yield from badge(*beside, label, RED)
+        if spot == (x, y):
+            yield Disc(x, y, DOT, RED, WHITE)
 
 
 def _free_spot(x: float, y: float, taken: Sequence[tuple[float, float]]) -> tuple[float, float]:

@@ -12,6 +12,7 @@ PLAN_HEIGHT: Final = 1100.0
 OVERVIEW_HEIGHT: Final = 400.0
 
 SMALL: Final = 13.0
+MEDIUM: Final = 16.0
 LARGE: Final = 20.0
 LINE: Final = 1.4
 """From one line of text to the next, in sizes of its letters."""
@@ -20,6 +21,8 @@ THIN: Final = 0.8
 THICK: Final = 1.6
 BADGE: Final = 9.0
 """Radius of a numbered marker."""
+DOT: Final = 2.5
+"""Radius of the dot at the place of a finding."""
 
 BLACK: Final = "#1a1a1a"
 GREY: Final = "#8c8c8c"
