@@ -23,6 +23,7 @@ from satAOI_geo.errors import (
 )
 from satAOI_geo.options import (
     AT,
+    BATCH,
     EXACT_OUTLINE,
     IFC,
     INSPECTION,
@@ -37,11 +38,14 @@ from satAOI_geo.options import (
     ROUTE_OUTPUT,
     STRICT,
     TO,
+    Batch,
+    HandingOn,
     Inspecting,
     Outputs,
     Question,
     Reading,
     StartAt,
+    handed_on,
     taking,
 )
 from satAOI_geo.outputs import (
@@ -49,6 +53,7 @@ from satAOI_geo.outputs import (
     refuse_early,
     refuse_targets,
     tell,
+    tell_batch,
     tell_figures,
     tell_route,
     write,
@@ -78,6 +83,11 @@ EXIT_CODES: Final[dict[type[SatAoiError], int]] = {
 EPILOG: Final = (
     "Exit codes: 0 done; 1 findings, with --strict; 2 usage; 3 drawing unusable; "
     "4 start blocked or nothing reachable; 5 a limit was reached; 130 interrupted."
+)
+
+BATCH_EPILOG: Final = (
+    "Exit code: 0 when every plan is done, else that of the first plan in the table that is not; "
+    "128 + N for a run that signal N ended."
 )
 
 
@@ -157,6 +167,51 @@ def run(*, plan: Path, quiet: bool, **options: Unpack[RunOptions]) -> int:
     write(result, options)
     tell(result, options, quiet=quiet)
     return FINDINGS if options["strict"] and result.report.findings else DONE
+
+
+class BatchOptions(PlanOptions, Batch):
+    """All that `batch` can be asked."""
+
+    exact_outline: bool
+
+
+@commands.command(cls=HandingOn, epilog=BATCH_EPILOG)
+@taking(BATCH, EXACT_OUTLINE, READING, QUESTION, QUIET)
+@click.pass_context
+def batch(context: click.Context, *, quiet: bool, **options: Unpack[BatchOptions]) -> int:
+    """Find the areas of interest on many plans.
+
+    satAOI-geo batch 'plans/*.dxf' --out-dir results
+
+    Each plan is run as by satAOI-geo run: NAME.aoi.dxf and NAME.aoi.json go to the folder, what
+    came of all plans goes to results.csv and results.json. A plan that fails is a row there and
+    stops no other. One whose results are there, of the same bytes, options and version, is not
+    run again.
+    """
+    from satAOI_adapters import kernel_cache
+    from satAOI_adapters.batch import plans_of, run_all, tasks_of
+    from satAOI_adapters.batch_results import earlier_rows
+    from satAOI_adapters.cluster import workers
+    from satAOI_adapters.robot_read import robot_from
+    from satAOI_adapters.terminal import counted
+
+    kernel_cache.prepare()
+    # what every run would refuse is refused once
+    robot_from(options["robot"])
+    settings_of(options, exact_outline=options["exact_outline"])
+    plans, out_dir = plans_of(options["plans"]), options["out_dir"]
+    own = {*Batch.__annotations__, "quiet"}
+    named = [Path(options["robot"]), options["layers"], options["xref_dir"]]
+    tasks = tasks_of(plans, out_dir, handed_on(context, besides=own), filter(None, named))
+    earlier = {} if options["again"] else earlier_rows(out_dir)
+    with (
+        workers(n_workers=options["workers"], scheduler=options["scheduler"]) as crew,
+        counted(len(tasks), quiet=quiet) as told,
+    ):
+        rows = run_all(tasks, crew, out_dir, earlier=earlier, told=lambda row: told(row.plan))
+    if not quiet:
+        tell_batch(rows, out_dir, n_left_out=len(plans) - len(tasks))
+    return next((row.exit_code for row in rows if row.exit_code != DONE), DONE)
 
 
 @commands.command()

@@ -105,7 +105,86 @@ def direction(context: click.Context, parameter: click.Parameter, text: str | No
         raise click.BadParameter(message, ctx=context, param=parameter) from error
 
 
+WRITTEN: Final = "satAOI_geo.options.written"
+"""Where a context keeps what each option was given, by the parameter's name."""
+
+
+class HandingOn(click.RichCommand):
+    """A command that hands options on to another one, as they were written."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Keep the options as they were written."""
+        ctx.meta[WRITTEN], _, _ = self.make_parser(ctx).parse_args(args=list(args))
+        return super().parse_args(ctx, args)
+
+
+def handed_on(context: click.Context, *, besides: set[str]) -> list[str]:
+    """The options a command was given, as arguments for another one.
+
+    Args:
+        context: Of a `HandingOn` command.
+        besides: Parameters that the other command does not have.
+    """
+    written = context.meta[WRITTEN]
+    arguments = []
+    for option in context.command.params:
+        if option.name in besides or option.name not in written:
+            continue
+        longest = max(option.opts, key=len)
+        if getattr(option, "is_flag", False):
+            arguments.append(longest)
+        else:
+            values = written[option.name] if option.multiple else [written[option.name]]
+            arguments.extend(f"{longest}={value}" for value in values)
+    return arguments
+
+
 PLAN: Final[Group] = (click.argument("plan", type=FILE),)
+
+
+class Batch(TypedDict):
+    """Which plans, where their results go, and who runs them; None for what is not given."""
+
+    plans: tuple[str, ...]
+    out_dir: Path
+    workers: int | None
+    scheduler: str | None
+    again: bool
+
+
+BATCH: Final[Group] = (
+    click.argument("plans", nargs=-1, required=True),
+    click.option(
+        "--out-dir",
+        metavar="FOLDER",
+        type=FILE,
+        required=True,
+        panel="The batch",
+        help="Where the results go, e.g. --out-dir results; it is made if there is none.",
+    ),
+    click.option(
+        "--workers",
+        metavar="N",
+        type=click.IntRange(min=1),
+        show_default="half the cores",
+        panel="The batch",
+        help="How many plans are run at a time, e.g. --workers 4",
+    ),
+    click.option(
+        "--scheduler",
+        metavar="ADDRESS",
+        panel="The batch",
+        help="Run the plans on the workers of a Dask scheduler, e.g. "
+        "--scheduler tcp://192.168.1.20:8786. They find all files under the same names as this "
+        "machine.",
+    ),
+    click.option(
+        "--again",
+        is_flag=True,
+        panel="The batch",
+        help="Run also the plans whose results are there.",
+    ),
+)
 
 
 class Outputs(TypedDict):

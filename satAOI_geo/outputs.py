@@ -15,6 +15,7 @@ from satAOI_geo.options import IFC, Inspecting, Outputs
 
 if TYPE_CHECKING:
     from satAOI_adapters import Inspection
+    from satAOI_adapters.batch_results import Row
     from satAOI_geo.pipeline import Result
     from satAOI_geo.route import Route
 
@@ -140,7 +141,10 @@ def refuse_drafts_early(plan: Path, options: Inspecting) -> None:
 
 
 def write_drafts(plan: Path, found: "Inspection", options: Inspecting) -> None:
-    """Write what was asked for, as far as there is something to show; each file whole or not."""
+    """Write what was asked for, as far as there is something to show; each file whole or not.
+
+    A model that is no plan as it is has nothing to be drawn.
+    """
     from satAOI_adapters import layers_writer_of, picture_writer_of
     from satAOI_adapters.terminal import say_note
 
@@ -166,3 +170,14 @@ def tell_figures(found: "Inspection", *, json: bool) -> None:
     for number, table in enumerate(inspect_write.tables_of(found.figures)):
         click.echo("\n" * min(number, 1), nl=False)
         write_table(table, sys.stdout)
+
+
+def tell_batch(rows: "list[Row]", out_dir: Path, *, n_left_out: int) -> None:
+    """Say what came of each plan of a batch."""
+    from satAOI_adapters.batch_results import table_of
+    from satAOI_adapters.terminal import say_note, write_table
+
+    write_table(table_of(rows), sys.stdout)
+    if n_left_out:
+        say_note(f"results of this batch are no plans; left out: {n_left_out}")
+    say_note(f"wrote {out_dir / 'results.csv'} and {out_dir / 'results.json'}")

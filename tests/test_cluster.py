@@ -30,7 +30,7 @@ def scheduler() -> Iterator[str]:
 @contextmanager
 def crew(where: str, request: pytest.FixtureRequest) -> Iterator[Workers]:
     scheduler = request.getfixturevalue("scheduler") if where == "dask" else None
-    with workers(n_workers=2, scheduler=scheduler) as working:
+    with workers(n_workers=None if scheduler else 2, scheduler=scheduler) as working:
         yield working
 
 
@@ -76,12 +76,27 @@ def test_a_task_that_kills_every_worker_is_given_up_and_the_others_are_not(
     where: str, request: pytest.FixtureRequest
 ) -> None:
     with crew(where, request) as working:
-        outcomes = list(working.outcomes(jobs.deadly_if_odd, range(4)))
+        outcomes = list(working.outcomes(jobs.deadly_if_one, range(4)))
     by_number = {outcome.number: outcome for outcome in outcomes}
-    assert [by_number[n].value() for n in (0, 2)] == [0, 4]
-    for n in (1, 3):
-        with pytest.raises(LimitError, match="died, one after the other"):
-            by_number[n].value()
+    assert [by_number[n].value() for n in (0, 2, 3)] == [0, 4, 9]
+    with pytest.raises(LimitError, match="died, one after the other"):
+        by_number[1].value()
+
+
+def test_the_loss_of_all_workers_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr("satAOI_adapters.cluster.LOST_S", 1)
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, dashboard_address=":0"
+        ) as cluster,
+        workers(scheduler=cluster.scheduler_address) as working,
+    ):
+        outcomes = working.outcomes(jobs.squared, range(1000))
+        assert next(outcomes).value() == 0
+        cluster.scale(0)
+        with pytest.raises(LimitError, match="lost all its workers"):
+            list(outcomes)
 
 
 @pytest.mark.parametrize("where", WHERE)
@@ -113,12 +128,13 @@ def test_outcomes_may_be_left_unfetched(where: str, request: pytest.FixtureReque
 
 
 def test_workers_that_cannot_be_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(InputError, match="0 workers"), workers(n_workers=0):
+    here_and_there = workers(n_workers=1, scheduler="tcp://127.0.0.1:1")
+    with pytest.raises(InputError, match="leave --workers out"), here_and_there:
         pass
     monkeypatch.setitem(sys.modules, "distributed", None)
     with (
         pytest.raises(InputError, match=r"satAOI-geo\[cluster\]"),
-        workers(n_workers=1, scheduler="tcp://127.0.0.1:1"),
+        workers(scheduler="tcp://127.0.0.1:1"),
     ):
         pass
 
@@ -129,7 +145,7 @@ def test_a_scheduler_without_workers_is_refused(monkeypatch: pytest.MonkeyPatch)
     with (
         distributed.LocalCluster(n_workers=0, dashboard_address=":0") as cluster,
         pytest.raises(InputError, match="has no workers"),
-        workers(n_workers=1, scheduler=cluster.scheduler_address),
+        workers(scheduler=cluster.scheduler_address),
     ):
         pass
 
@@ -140,7 +156,7 @@ def test_workers_of_another_version_are_refused(
     monkeypatch.setattr("satAOI_geo.__version__", "99.0")
     with (
         pytest.raises(InputError, match=r"runs satAOI-geo .*, this is 99\.0"),
-        workers(n_workers=1, scheduler=scheduler),
+        workers(scheduler=scheduler),
     ):
         pass
 
@@ -151,6 +167,6 @@ def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch: pytest.MonkeyP
     for address in ("tcp://127.0.0.1:1", "nonsense://x"):
         with (
             pytest.raises(InputError, match="no Dask scheduler answers"),
-            workers(n_workers=1, scheduler=address),
+            workers(scheduler=address),
         ):
             pass

@@ -41,6 +41,9 @@ INTERRUPT_S: Final = 0.3
 CONNECT_S: Final = 10
 """Longest wait for a scheduler, and then for its first worker."""
 
+LOST_S: Final = 30
+"""Where nothing gets done for so long it is asked whether there are still workers."""
+
 
 @dataclass(frozen=True, slots=True)
 class Outcome(Generic[AnswerT]):
@@ -74,21 +77,23 @@ class Workers(Protocol):
 
 
 @contextmanager
-def workers(*, n_workers: int, scheduler: str | None = None) -> Iterator[Workers]:
+def workers(*, n_workers: int | None = None, scheduler: str | None = None) -> Iterator[Workers]:
     """Workers for the time of a block.
 
     Args:
-        n_workers: Processes on this machine, 1 or more; with a scheduler, none.
+        n_workers: Processes on this machine, 1 or more; without it half as many as it has cores,
+            since most work uses several.
         scheduler: Address of a Dask scheduler whose workers are to do it instead.
 
     Raises:
-        InputError: If there can be none of them, or those of the scheduler are of another version.
+        InputError: If both are given, the scheduler has no workers, or they are of another
+            version.
     """
     if scheduler is None:
-        if n_workers < 1:
-            raise InputError(f"{n_workers} workers asked for; give 1 or more")
-        yield Processes(n_workers)
+        yield Processes(n_workers or max(1, (os.cpu_count() or 1) // 2))
         return
+    if n_workers is not None:
+        raise InputError("a --scheduler has workers of its own; leave --workers out")
     with _connected(scheduler) as client:
         yield Dask(client)
 
@@ -217,23 +222,35 @@ class Dask:
         self, function: Callable[[TaskT], AnswerT], tasks: Iterable[TaskT]
     ) -> Generator[Outcome[AnswerT], None, None]:
         """As in `Workers`."""
-        from distributed import as_completed
-
         numbered = enumerate(tasks)
-        numbers: dict[str, int] = {}
-        done = as_completed(loop=self._client.loop)
+        numbers: dict[Future, int] = {}
         while True:
-            # a worker may come or go; a task that waits behind one of which a worker dies would
-            # be taken for its cause
+            # A worker may come or go. No task waits behind another one: where a worker dies, Dask
+            # blames all tasks that it had.
             n_idle = max(1, sum(self._client.nthreads().values())) - len(numbers)
             for number, task in itertools.islice(numbered, max(0, n_idle)):
-                future = self._client.submit(function, task, pure=False)
-                numbers[future.key] = number
-                done.add(future)
+                numbers[self._client.submit(function, task, pure=False)] = number
             if not numbers:
                 return
-            future = next(done)
-            yield _outcome_of(numbers.pop(future.key), future)
+            for future in self._done(list(numbers)):
+                yield _outcome_of(numbers.pop(future), future)
+
+    def _done(self, futures: list["Future"]) -> list["Future"]:
+        """Those that are done, as soon as one is.
+
+        Raises:
+            LimitError: If all workers are lost.
+        """
+        from distributed import wait
+
+        while True:
+            try:
+                done, _ = wait(futures, timeout=LOST_S, return_when="FIRST_COMPLETED")
+            except TimeoutError:
+                if not self._client.nthreads():
+                    raise _all_lost() from None
+            else:
+                return list(done)
 
 
 def _outcome_of(number: int, future: "Future") -> Outcome[AnswerT]:
@@ -259,7 +276,7 @@ def _connected(scheduler: str) -> Iterator["Client"]:
             "--scheduler needs Dask; install it with pip install 'satAOI-geo[cluster]'"
         ) from error
     try:
-        client = Client(scheduler, timeout=CONNECT_S, set_as_default=False)
+        client = Client(scheduler, timeout=CONNECT_S)
     except (OSError, ValueError) as error:
         raise InputError(
             f"no Dask scheduler answers at '{scheduler}'; give its address, for example "
@@ -308,4 +325,13 @@ def _died() -> LimitError:
         limit="attempts",
         value=MAX_ATTEMPTS,
         allowed=MAX_ATTEMPTS,
+    )
+
+
+def _all_lost() -> LimitError:
+    return LimitError(
+        "the scheduler has lost all its workers; start some and run this again",
+        limit="workers",
+        value=0,
+        allowed=1,
     )
