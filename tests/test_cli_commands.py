@@ -111,7 +111,7 @@ def test_an_inspection_tells_the_layers_of_a_drawing_whose_unit_is_not_known(
     said = capsys.readouterr()
     assert "COLUMN" in said.out
     assert "=COLUMN" in layers.read_text(encoding="utf-8")
-    assert not picture.exists()
+    assert picture.read_bytes().startswith(b"\x89PNG")
     assert said.err.splitlines()[-1].startswith("error: no unit of length")
     assert main(["inspect", str(plan), "--json"]) == 3
     assert "--units" in json.loads(capsys.readouterr().out)["error"]

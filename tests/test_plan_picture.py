@@ -22,7 +22,7 @@ from satAOI_adapters.plan_picture.layout import page_of
 from satAOI_adapters.plan_picture.page import Page, Strokes, Text
 from satAOI_adapters.plan_picture.sheet import Sheet, place_marks, scale_bar
 from satAOI_adapters.plan_picture.style import BADGE, BLUE, COLOURS, FLOOR_FILL, RED
-from satAOI_geo import DrawingError, InputError
+from satAOI_geo import DrawingError, InputError, UnitError
 from satAOI_geo.plan import Finding, FloorPlan, Kind, Obstacle, Source
 from tests.drawings import drawing, rectangle
 
@@ -165,6 +165,17 @@ def test_the_start_is_marked(tmp_path: Path) -> None:
     document.modelspace().add_point((5000, 5000), dxfattribs={"layer": "SATAOI-START"})
     titles = [t.text for t in elements(page_of(inspected(document, tmp_path)), "title")]
     assert titles.count("start") == 2  # on the plan and in the key
+
+
+def test_a_drawing_whose_unit_is_not_known_is_drawn_with_a_scale_in_units(tmp_path: Path) -> None:
+    # 400 units may be 4 m in cm, or as well 10 m in inches
+    document = drawing(unit=0, floor=False)
+    rectangle(document.modelspace(), 0, 0, 400, 400, layer="FLOOR")
+    found = inspected(document, tmp_path)
+    assert isinstance(found.error, UnitError)
+    said = words(page_of(found))
+    assert "drawn in a unit that is not known" in said
+    assert "50 units" in said  # a fifth of 400 units and the blank around them is 85
 
 
 def test_a_drawing_that_is_no_plan_is_drawn_with_the_reason(tmp_path: Path) -> None:

@@ -32,7 +32,8 @@ class Sketch:
     """All that is drawn, before it is a plan.
 
     Attributes:
-        frame: Where it lies in the drawing.
+        frame: Where it lies in the drawing; where the drawing's unit is not known, as if it were a
+            millimetre.
         lines: By the kind of obstacle they are drawn as, None for those that are none; curves by
             chords, in the frame.
         parts_mm: Bounds of the parts that may be plans, in the frame, the likeliest first.
@@ -52,7 +53,7 @@ class Inspected(Generic[Figures_co]):
         findings: What was skipped, guessed or repaired.
         plan: The plan as it is read; None where it cannot be, or was not asked for.
         error: Why the file cannot be used as it is.
-        sketch: What is drawn (DXF), where its unit is known.
+        sketch: What is drawn (DXF).
         layers: Which layer is taken for what (DXF).
     """
 

@@ -10,7 +10,6 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.entities import Feature
-from satAOI_adapters.dxf_read.meaning import Seen
 from satAOI_adapters.dxf_read.obstacles import area_of
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.plans import Drawn, clusters
@@ -131,17 +130,19 @@ def inspect(path: Path, options: ReadOptions) -> Inspected[Inspection]:
         plan = plan_of(drawing, options)
     except SatAoiError as reason:
         error = reason
-    frame = None if isinstance(drawing.known, UnitError) else drawing.frame()
+    is_measured = not isinstance(drawing.known, UnitError)
+    # without a unit the drawing can still be seen, if not measured
+    frame = drawing.frame() if is_measured else drawing.frame_in(1.0)
     tallies = _tallies(drawing, frame)
-    sketch = None if frame is None else _sketch(tallies, frame)
+    sketch = _sketch(tallies, frame, with_parts=is_measured)
     findings = drawing.findings if plan is None else plan.findings
     figures = Inspection(
         source=_source(drawing),
         version=drawing.document.dxfversion,
         bounds=drawing.box,
-        size_mm=None if frame is None else _size(drawing.box, frame.mm_per_unit),
-        plans=() if sketch is None else _plans(sketch),
-        layers=_layers(tallies, drawing.expansion.hidden, frame),
+        size_mm=_size(drawing.box, frame.mm_per_unit) if is_measured else None,
+        plans=_plans(sketch),
+        layers=_layers(tallies, drawing.expansion.hidden, is_measured=is_measured),
         findings=findings,
         error="" if error is None else str(error),
     )
@@ -155,25 +156,18 @@ def _source(drawing: Survey) -> Source:
     return drawing.source()
 
 
-def _tallies(drawing: Survey, frame: Frame | None) -> dict[tuple[str, Verdict], _Tally]:
-    """What each layer holds, by what it is taken for; features only where the unit is known."""
+def _tallies(drawing: Survey, frame: Frame) -> dict[tuple[str, Verdict], _Tally]:
+    """What each layer holds, by what it is taken for."""
     tallies: dict[tuple[str, Verdict], _Tally] = {}
-    for entity in drawing.seen:
-        tally = tallies.setdefault(_alike(entity), _Tally())
+    for entity, features in drawn_by(drawing.seen, frame):
+        tally = tallies.setdefault((entity.placed.layer, entity.verdict), _Tally())
         tally.entities[entity.placed.kind] += 1
-    if frame is not None:
-        for entity, features in drawn_by(drawing.seen, frame):
-            tallies[_alike(entity)].features.extend(features)
+        tally.features.extend(features)
     return tallies
 
 
-def _alike(entity: Seen) -> tuple[str, Verdict]:
-    """What entities have in common that are told together."""
-    return entity.placed.layer, entity.verdict
-
-
 def _layers(
-    tallies: Mapping[tuple[str, Verdict], _Tally], hidden: Counter[str], frame: Frame | None
+    tallies: Mapping[tuple[str, Verdict], _Tally], hidden: Counter[str], *, is_measured: bool
 ) -> tuple[LayerFigures, ...]:
     seen = {layer for layer, _ in tallies}
     # a layer of which nothing is seen has a line of its own
@@ -185,8 +179,8 @@ def _layers(
             certainty=verdict.certainty,
             pattern=verdict.pattern,
             entities=dict(tally.entities.most_common()),
-            area_mm2=None if frame is None else _area_mm2(tally.features),
-            length_mm=None if frame is None else _length_mm(tally.features),
+            area_mm2=_area_mm2(tally.features) if is_measured else None,
+            length_mm=_length_mm(tally.features) if is_measured else None,
             n_hidden=hidden[layer],
         )
         for (layer, verdict), tally in sorted({**tallies, **unseen}.items(), key=_by_layer)
@@ -217,7 +211,9 @@ def _covered(feature: Feature) -> list[BaseGeometry]:
     return [shape.polygon() if isinstance(shape, Circle) else shape for shape in shapes]
 
 
-def _sketch(tallies: Mapping[tuple[str, Verdict], _Tally], frame: Frame) -> Sketch:
+def _sketch(
+    tallies: Mapping[tuple[str, Verdict], _Tally], frame: Frame, *, with_parts: bool
+) -> Sketch:
     """All lines, by the kind of obstacle that they are drawn as."""
     lines: defaultdict[Kind | None, list[LineString]] = defaultdict(list)
     drawn: Drawn = {meaning: [] for meaning in PART_SIGNS}
@@ -226,7 +222,8 @@ def _sketch(tallies: Mapping[tuple[str, Verdict], _Tally], frame: Frame) -> Sket
         lines[kind].extend(middle_line(path) for f in tally.features for path in f.paths)
         if verdict.meaning in drawn:
             drawn[verdict.meaning].extend(tally.features)
-    return Sketch(frame, lines, [cluster.bounds_mm for cluster in clusters(drawn)])
+    parts = clusters(drawn) if with_parts else []
+    return Sketch(frame, lines, [part.bounds_mm for part in parts])
 
 
 def _plans(sketch: Sketch) -> tuple[PlanFigures, ...]:

@@ -104,9 +104,13 @@ class Survey:
         Raises:
             UnitError: If the unit is not known.
         """
-        x_mm, y_mm = self.middle[0] * self.unit.mm, self.middle[1] * self.unit.mm
+        return self.frame_in(self.unit.mm)
+
+    def frame_in(self, mm_per_unit: float) -> Frame:
+        """The same, were the unit as long as this."""
+        x_mm, y_mm = self.middle[0] * mm_per_unit, self.middle[1] * mm_per_unit
         origin_mm = (float(math.floor(x_mm)), float(math.floor(y_mm)))
-        return Frame(origin_mm=origin_mm, mm_per_unit=self.unit.mm)
+        return Frame(origin_mm=origin_mm, mm_per_unit=mm_per_unit)
 
     def drawn(self, frame: Frame, wanted: Iterable[Meaning | None]) -> Drawn:
         """What the entities of some meanings draw, in millimetres of the frame.

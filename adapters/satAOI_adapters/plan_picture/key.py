@@ -106,7 +106,10 @@ class Key:
     def write(self, found: Inspected[Figures], findings: Sequence[Told]) -> None:
         """Write the whole key."""
         source = found.figures.source
-        self._entry((), f"drawn in {source.unit} ({source.unit_source})", GREY)
+        unit = (
+            f"{source.unit} ({source.unit_source})" if source.unit else "a unit that is not known"
+        )
+        self._entry((), f"drawn in {unit}", GREY)
         if found.plan is None:
             self._kinds({kind: str(kind) for kind in COLOURS})
         else:

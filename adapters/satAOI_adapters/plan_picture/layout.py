@@ -63,7 +63,10 @@ def page_of(found: Inspected[Figures]) -> Page:
     marks = [Text(MARGIN, MARGIN + LARGE / 2, name, LARGE, BLACK), *key.marks]
     for each in sheets:
         marks.append(Strokes((LineString(each.rim.exterior.coords),), GREY, THIN))
-        marks.extend((*plan_marks(found, each), *scale_bar(each)))
+        marks.extend(plan_marks(found, each))
+        marks.extend(
+            scale_bar(each) if found.figures.source.unit else scale_bar(each, "units", 1.0)
+        )
     marks.extend(place_marks(places_mm, sheet))
     if found.sketch is not None and len(found.sketch.parts_mm) > 1:
         marks.extend(part_marks(found.sketch, sheets[-1]))

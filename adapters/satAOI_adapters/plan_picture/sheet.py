@@ -1,7 +1,7 @@
 """The plan on the page: floor, lines, obstacles, parts, start, places of findings."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -30,7 +30,7 @@ from satAOI_adapters.plan_picture.style import (
     THIN,
     WHITE,
 )
-from satAOI_geo.plan import FloatArray, FloorPlan, Frame, Kind, Obstacle, polygons_in
+from satAOI_geo.plan import FloatArray, FloorPlan, Frame, Obstacle, polygons_in
 
 ROOM: Final = 0.03
 """Blank space around the plan, as a share of its larger side."""
@@ -68,7 +68,7 @@ class Sheet:
             height: Its greatest height.
         """
         left_mm, bottom_mm, right_mm, top_mm = bounds_mm
-        room_mm = ROOM * max(right_mm - left_mm, top_mm - bottom_mm, MM_PER_M)
+        room_mm = ROOM * (max(right_mm - left_mm, top_mm - bottom_mm) or MM_PER_M)
         around_mm = (left_mm - room_mm, bottom_mm - room_mm, right_mm + room_mm, top_mm + room_mm)
         width_mm, height_mm = around_mm[2] - around_mm[0], around_mm[3] - around_mm[1]
         return cls(around_mm, x, y, min(PLAN_WIDTH / width_mm, height / height_mm))
@@ -118,7 +118,7 @@ def plan_marks(found: Inspected[Figures], sheet: Sheet) -> Iterator[Mark]:
         for polygon in sheet.polygons(plan.floor, plan.frame):
             yield Area(polygon, FLOOR_FILL, FLOOR_EDGE, THICK, "floor")
     if sketch is not None:
-        yield from _lines(sketch, sheet, COLOURS if plan is None else PALE)
+        yield from _lines(sketch, sheet, faded=plan is not None)
     if plan is not None:
         for kind in COLOURS:
             for obstacle in plan.obstacles:
@@ -146,12 +146,14 @@ def _bounds_mm(points_mm: FloatArray, frame: Frame) -> Bounds:
     return float(left_mm), float(bottom_mm), float(right_mm), float(top_mm)
 
 
-def _lines(sketch: Sketch, sheet: Sheet, colours: Mapping[Kind, str]) -> Iterator[Strokes]:
-    """All that is drawn, in thin lines; what stands on the floor comes over it."""
+def _lines(sketch: Sketch, sheet: Sheet, *, faded: bool) -> Iterator[Strokes]:
+    """All that is drawn; faded where the obstacles among it come over it."""
     for kind, lines in sketch.lines.items():
-        if lines:
-            colour = NO_OBSTACLE if kind is None else colours[kind]
-            yield Strokes(sheet.lines(lines, sketch.frame), colour, THIN)
+        if lines and kind is None:
+            yield Strokes(sheet.lines(lines, sketch.frame), NO_OBSTACLE, THIN)
+        elif lines and kind is not None:
+            colour, width = (PALE[kind], THIN) if faded else (COLOURS[kind], THICK)
+            yield Strokes(sheet.lines(lines, sketch.frame), colour, width)
 
 
 def _obstacle(obstacle: Obstacle, frame: Frame, sheet: Sheet) -> Iterator[Mark]:
@@ -229,13 +231,13 @@ def _free_spot(x: float, y: float, taken: Sequence[tuple[float, float]]) -> tupl
     return x, y
 
 
-def scale_bar(sheet: Sheet) -> Iterator[Mark]:
+def scale_bar(sheet: Sheet, unit: str = "m", mm_per_unit: float = MM_PER_M) -> Iterator[Mark]:
     """A bar of a round length, about a fifth of the sheet's width."""
-    wanted_m = sheet.width / sheet.per_mm / MM_PER_M / 5
-    power = 10.0 ** math.floor(math.log10(wanted_m))
-    length_m = max(step * power for step in (1, 2, 5) if step * power <= wanted_m)
+    wanted = sheet.width / sheet.per_mm / mm_per_unit / 5
+    power = 10.0 ** math.floor(math.log10(wanted))
+    length = max(step * power for step in (1, 2, 5) if step * power <= wanted)
     left, y = sheet.x, sheet.y + sheet.height + 2 * BADGE
-    right = left + length_m * MM_PER_M * sheet.per_mm
+    right = left + length * mm_per_unit * sheet.per_mm
     ends = [LineString([(x, y - 5), (x, y + 5)]) for x in (left, right)]
     yield Strokes((LineString([(left, y), (right, y)]), *ends), BLACK, THICK)
-    yield Text(right + BADGE, y, f"{length_m:g} m", SMALL, BLACK)
+    yield Text(right + BADGE, y, f"{length:g} {unit}", SMALL, BLACK)
