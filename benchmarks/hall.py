@@ -23,7 +23,7 @@ from satAOI_geo.freespace import free_space
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.pipeline import area_of_interest
-from satAOI_geo.reach import DiscComponents, PoseComponents
+from satAOI_geo.reach import Band, DiscComponents, PoseComponents
 from satAOI_geo.robot import ROBOTS
 
 SAMPLE: Final = Path(__file__).parents[1] / "samples" / "hall_complex.dxf"
@@ -57,15 +57,15 @@ def stages(drawing: Path, folder: Path) -> dict[str, Job]:
     robot = ROBOTS["magicbim"]
     plan = read_plan(drawing)
     lattice = Lattice.over(plan.floor.bounds, robot)
-    engine = Intervals(plan, robot, lattice)
+    engine = Intervals.of(plan, robot, lattice)
     space = free_space(engine, robot, lattice)
     free = space.free_nodes()
     result = area_of_interest(plan, robot)
     return {
         "read the drawing": lambda: read_plan(drawing),
-        "free space": lambda: free_space(Intervals(plan, robot, lattice), robot, lattice),
+        "free space": lambda: free_space(Intervals.of(plan, robot, lattice), robot, lattice),
         "disc-connected sets": lambda: DiscComponents.of(free),
-        "pose-connected sets": lambda: PoseComponents.of(engine, robot, space),
+        "pose-connected sets": lambda: PoseComponents.of(lattice, [Band.of(engine, robot, space)]),
         "area": lambda: area(free, lattice, robot.disc_radius_mm),
         "write the drawing": lambda: write_aoi(folder / "stage.dxf", result),
     }

@@ -43,7 +43,7 @@ def in_full(job: Callable[[Question], BoolArray]) -> Contender:
 def disc_connected(question: Question) -> BoolArray:
     """This project, by the paper's rule: free space, connected sets, area with its outline."""
     lattice = question.lattice
-    free = free_space(Intervals(question.plan, ROBOT, lattice), ROBOT, lattice).free_nodes()
+    free = free_space(Intervals.of(question.plan, ROBOT, lattice), ROBOT, lattice).free_nodes()
     area(largest_set(free), lattice, ROBOT.disc_radius_mm)
     return free
 

@@ -40,7 +40,7 @@ class Images:
     @classmethod
     def of(cls, plan: FloorPlan, lattice: Lattice) -> "Images":
         """The images of a plan; the answer is found by row intervals."""
-        free = free_space(Intervals(plan, ROBOT, lattice), ROBOT, lattice).free_nodes()
+        free = free_space(Intervals.of(plan, ROBOT, lattice), ROBOT, lattice).free_nodes()
         return cls(occupied_cells(plan, lattice), free, largest_set(free))
 
     def tried(self) -> BoolArray:

@@ -332,6 +332,7 @@ def settings_of(question: Question, *, exact_outline: bool) -> "Settings":
         align_rad=None if align_deg is None else math.radians(align_deg),
         engine=question["engine"],
         exact_outline=exact_outline,
+        memory_gb=question["memory"],
     )
 
 

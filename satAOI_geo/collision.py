@@ -111,6 +111,10 @@ class Reference:
             barred += [(rows_up, iy, ix) for iy, ix in np.argwhere(swept).tolist()]
         return AtRest(blocked, np.array(barred, dtype=np.int64).reshape(-1, 3))
 
+    def band(self, rows: slice) -> "Reference":
+        """An engine for some rows of the lattice, with start and stop."""
+        return Reference(self._collider, self._lattice.band(rows))
+
     def blocked(self, part: Part) -> Words:
         """Nodes at which the part touches something, and every bit beyond the last column."""
         lattice = self._lattice

@@ -29,5 +29,8 @@ class Engine(Protocol):
     def at_rest(self, part: Part) -> AtRest:
         """The nodes at which the part touches something, and the steps between them."""
 
+    def band(self, rows: slice) -> "Engine":
+        """An engine for some rows of the lattice, with start and stop."""
+
     def blocked(self, part: Part) -> Words:
         """Nodes at which the part touches something, and every bit beyond the last column."""

@@ -52,9 +52,9 @@ class FreeSpace:
         np.bitwise_and.at(steps, (iy, ix // WORD_BITS), ~bits)
         return steps
 
-    def n_states(self) -> int:
-        """How many (node, pose) pairs are free."""
-        return int(np.bitwise_count(self.words).sum())
+    def n_states(self, rows: slice = slice(None)) -> int:
+        """How many (node, pose) pairs are free in some rows."""
+        return int(np.bitwise_count(self.words[:, :, rows]).sum())
 
 
 @dataclass(frozen=True, slots=True)

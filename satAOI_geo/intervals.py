@@ -13,7 +13,7 @@ Coordinates inside the kernels are lattice units: node [iy, ix] lies at (ix, iy)
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numba
 import numpy as np
@@ -73,49 +73,77 @@ class Pieces:
             np.array(radii_mm) / lattice.step_mm,
         )
 
+    def between(self, low: float, high: float) -> "Pieces":
+        """The pieces that reach into the rows from low to high."""
+        bottom = self.y[self.first[:-1]]
+        kept = (self.top + self.radius >= low) & (bottom - self.radius <= high)
+        n_corners = np.diff(self.first)
+        corners = np.repeat(kept, n_corners)
+        first = np.concatenate(([0], np.cumsum(n_corners[kept])))
+        return Pieces(self.x[corners], self.y[corners], first, self.top[kept], self.radius[kept])
 
+
+@dataclass(frozen=True, slots=True)
 class Intervals:
     """The fast engine: tells where a part touches something by row intervals.
 
-    Args:
-        plan: The floor and its obstacles.
-        robot: The robot whose parts, at rest or swept by one move, will be asked for.
+    Attributes:
         lattice: Nodes and directions.
-        clearance_mm: Distance to keep beyond contact.
+        pieces: All that a part can touch at these nodes.
+        keep_mm: Distance at which it is touched.
+        reach_mm: No part reaches farther from its node.
     """
 
-    def __init__(
-        self, plan: FloorPlan, robot: Robot, lattice: Lattice, clearance_mm: float = 0.0
-    ) -> None:
-        self._lattice = lattice
-        self._keep_mm = clearance_mm + CONTACT_MM
+    lattice: Lattice
+    pieces: Pieces
+    keep_mm: float
+    reach_mm: float
+
+    @classmethod
+    def of(
+        cls, plan: FloorPlan, robot: Robot, lattice: Lattice, clearance_mm: float = 0.0
+    ) -> "Intervals":
+        """The engine for a plan and the parts of a robot, at rest or swept by one move.
+
+        The clearance is the distance to keep beyond contact.
+        """
+        keep_mm = clearance_mm + CONTACT_MM
         # a swept part reaches beyond the robot by one step, or by the push of its convex hull
         # beyond the arc, which is largest, half as far again, at four directions
-        margin_mm = 1.5 * robot.reach_mm + lattice.step_mm + self._keep_mm
-        self._pieces = Pieces.of(plan, lattice, margin_mm)
+        reach_mm = 1.5 * robot.reach_mm + lattice.step_mm + keep_mm
+        return cls(lattice, Pieces.of(plan, lattice, reach_mm), keep_mm, reach_mm)
 
     def at_rest(self, part: Part) -> AtRest:
         """The nodes at which the part touches something, and the steps between them."""
-        words = self._lattice.no_nodes()
+        words = self.lattice.no_nodes()
         return AtRest(words, self._block(words, part, watch=True).reshape(-1, 3))
+
+    def band(self, rows: slice) -> "Intervals":
+        """An engine for some rows of the lattice, with start and stop."""
+        lattice = self.lattice.band(rows)
+        reach = self.reach_mm / lattice.step_mm
+        low, high = lattice.first_row, lattice.first_row + lattice.n_rows
+        pieces = self.pieces.between(low - reach, high + reach)
+        return replace(self, lattice=lattice, pieces=pieces)
 
     def blocked(self, part: Part) -> Words:
         """Nodes at which the part touches something, and every bit beyond the last column."""
-        words = self._lattice.no_nodes()
+        words = self.lattice.no_nodes()
         self._block(words, part, watch=False)
         return words
 
     def _block(self, words: Words, part: Part, *, watch: bool) -> IntArray:
         """Set the bits of the nodes at which the part touches something; see the kernel."""
-        lattice, pieces = self._lattice, self._pieces
+        lattice, pieces = self.lattice, self.pieces
         # -K: a half turn keeps the sense of rotation
         mirrored = _from_lowest(-part.corners_mm / lattice.step_mm)
         return _block(
             words,
+            lattice.first_row,
             lattice.n_columns,
             np.ascontiguousarray(mirrored[:, 0]),
             np.ascontiguousarray(mirrored[:, 1]),
-            (part.radius_mm + self._keep_mm) / lattice.step_mm,
+            (part.radius_mm + self.keep_mm) / lattice.step_mm,
             pieces.x,
             pieces.y,
             pieces.first,
@@ -149,6 +177,7 @@ def _from_lowest(corners: FloatArray) -> FloatArray:
 @numba.njit(nogil=True, cache=True)
 def _block(
     words: Words,
+    first_row: int,
     n_columns: int,
     part_x: FloatArray,
     part_y: FloatArray,
@@ -166,7 +195,8 @@ def _block(
     sum, and its other corners follow by taking the edges of both in the order of their direction.
 
     Args:
-        words: Shape (n_rows, n_words).
+        words: Shape (n_rows, n_words), the rows from first_row on.
+        first_row: Row of the whole lattice that row 0 of words is.
         n_columns: Columns of the lattice.
         part_x: Corners of the part, from its lowest on.
         part_y: The same.
@@ -196,15 +226,15 @@ def _block(
         r = reach + radius[piece]
         lowest = math.ceil(y[begin] + part_y[0] - r)
         highest = math.floor(top[piece] + part_top + r)
-        if lowest >= n_rows or highest < 0:
+        if lowest >= first_row + n_rows or highest < first_row:
             continue
         n_corners, n_rising = _minkowski_sum(
             x[begin:end], y[begin:end], part_x, part_y, sum_x, sum_y
         )
-        low, high = max(0, lowest), min(n_rows - 1, highest)
-        _right_flank(sum_x, sum_y, n_rising, r, low, high, right)
-        _left_flank(sum_x, sum_y, n_rising, n_corners, r, low, high, left)
-        for iy in range(low, high + 1):
+        low, high = max(first_row, lowest), min(first_row + n_rows - 1, highest)
+        _right_flank(sum_x, sum_y, n_rising, r, low, high, first_row, right)
+        _left_flank(sum_x, sum_y, n_rising, n_corners, r, low, high, first_row, left)
+        for iy in range(low - first_row, high - first_row + 1):
             begin_ix, end_ix = _columns(left[iy], right[iy], n_columns)
             if begin_ix <= end_ix:
                 set_bits(words[iy], begin_ix, end_ix)
@@ -212,7 +242,7 @@ def _block(
                 _append(barred, 0, iy, end_ix)
         if watch:
             corners = sum_x[:n_corners], sum_y[:n_corners]
-            _bar_steps_up(barred, left, right, lowest, highest, corners, r, n_columns)
+            _bar_steps_up(barred, left, right, first_row, lowest, highest, corners, r, n_columns)
     return np.array(barred)
 
 
@@ -227,6 +257,7 @@ def _bar_steps_up(
     barred: list[int],
     left: FloatArray,
     right: FloatArray,
+    first_row: int,
     lowest: int,
     highest: int,
     corners: tuple[FloatArray, FloatArray],
@@ -241,8 +272,9 @@ def _bar_steps_up(
 
     Args:
         barred: Three numbers a step, see `engine.AtRest`.
-        left: Left end in the rows that the polygon meets.
+        left: Left end in the rows that the polygon meets, from first_row on.
         right: Right end.
+        first_row: See the caller.
         lowest: The first row that the polygon meets, on the lattice or not.
         highest: The last one.
         corners: x and y of the polygon's corners.
@@ -251,24 +283,26 @@ def _bar_steps_up(
     """
     x, y = corners
     leftmost, rightmost = x.argmin(), x.argmax()
-    leftmost_iy, rightmost_iy = math.floor(y[leftmost]), math.floor(y[rightmost])
-    for iy in range(max(0, lowest - 1), min(left.size - 2, highest) + 1):
-        is_plain = lowest <= iy < highest and iy not in (leftmost_iy, rightmost_iy)
+    leftmost_row, rightmost_row = math.floor(y[leftmost]), math.floor(y[rightmost])
+    last_row = first_row + left.size - 1
+    for row in range(max(first_row, lowest - 1), min(last_row - 1, highest) + 1):
+        iy = row - first_row
+        is_plain = lowest <= row < highest and row not in (leftmost_row, rightmost_row)
         if is_plain and max(left[iy], left[iy + 1]) + 1 <= min(right[iy], right[iy + 1]):
             # both rows hold a common node, and the polygon does not reach beyond them between
             continue
         least, greatest = math.inf, -math.inf
         begin_ix, end_ix = n_columns, -1
         next_begin_ix, next_end_ix = n_columns, -1
-        if iy >= lowest:
+        if row >= lowest:
             least, greatest = left[iy], right[iy]
             begin_ix, end_ix = _columns(least, greatest, n_columns)
-        if iy < highest:
+        if row < highest:
             least, greatest = min(least, left[iy + 1]), max(greatest, right[iy + 1])
             next_begin_ix, next_end_ix = _columns(left[iy + 1], right[iy + 1], n_columns)
-        if iy == leftmost_iy:
+        if row == leftmost_row:
             least = min(least, x[leftmost] - r)
-        if iy == rightmost_iy:
+        if row == rightmost_row:
             greatest = max(greatest, x[rightmost] + r)
         ix, last_ix = _columns(least, greatest, n_columns)
         while ix <= last_ix:
@@ -344,9 +378,13 @@ def _right_flank(
     r: float,
     low: int,
     high: int,
+    first_row: int,
     right: FloatArray,
 ) -> None:
-    """Greatest x of the rounded polygon in each row from low to high, going up its right side."""
+    """Greatest x of the rounded polygon in each row from low to high, going up its right side.
+
+    The first element of the flank stands for first_row.
+    """
     iy = low
     vx, vy = x[0], y[0]
     for k in range(1, n_rising + 1):
@@ -354,10 +392,11 @@ def _right_flank(
         if dy > 0.0:
             length = math.hypot(dx, dy)
             nx, ny = dy / length, -dx / length
-            iy = _arc(vx, vy, r, 1.0, iy, min(high, vy + r * ny), right)
-            iy = _line(vx + r * nx, vy + r * ny, dx / dy, iy, min(high, y[k] + r * ny), right)
+            iy = _arc(vx, vy, r, 1.0, iy, min(high, vy + r * ny), first_row, right)
+            last = min(high, y[k] + r * ny)
+            iy = _line(vx + r * nx, vy + r * ny, dx / dy, iy, last, first_row, right)
         vx, vy = x[k], y[k]
-    _arc(vx, vy, r, 1.0, iy, high, right)
+    _arc(vx, vy, r, 1.0, iy, high, first_row, right)
 
 
 @numba.njit(nogil=True, cache=True)
@@ -369,9 +408,13 @@ def _left_flank(
     r: float,
     low: int,
     high: int,
+    first_row: int,
     left: FloatArray,
 ) -> None:
-    """Least x of the rounded polygon in each row from low to high, going up its left side."""
+    """Least x of the rounded polygon in each row from low to high, going up its left side.
+
+    The first element of the flank stands for first_row.
+    """
     iy = low
     vx, vy = x[0], y[0]
     for k in range(n_corners - 1, n_rising - 1, -1):
@@ -379,13 +422,14 @@ def _left_flank(
         if dy > 0.0:
             length = math.hypot(dx, dy)
             nx, ny = -dy / length, dx / length
-            iy = _arc(vx, vy, r, -1.0, iy, min(high, vy + r * ny), left)
-            iy = _line(vx + r * nx, vy + r * ny, dx / dy, iy, min(high, y[k] + r * ny), left)
+            iy = _arc(vx, vy, r, -1.0, iy, min(high, vy + r * ny), first_row, left)
+            last = min(high, y[k] + r * ny)
+            iy = _line(vx + r * nx, vy + r * ny, dx / dy, iy, last, first_row, left)
         elif dx > 0.0:
             # the level top, met from its left end: the arc about that end takes all rows left
             break
         vx, vy = x[k], y[k]
-    _arc(vx, vy, r, -1.0, iy, high, left)
+    _arc(vx, vy, r, -1.0, iy, high, first_row, left)
 
 
 @numba.njit(nogil=True, cache=True)
@@ -396,22 +440,25 @@ def _arc(
     side: float,
     iy: int,
     last: float,
+    first_row: int,
     flank: FloatArray,
 ) -> int:
     """Fill rows from iy up to `last` with the circle of radius r about (vx, vy); next row."""
     next_iy = max(iy, math.floor(last) + 1)
     for row in range(iy, next_iy):
         rise = row - vy
-        flank[row] = vx + side * math.sqrt(max(0.0, r * r - rise * rise))
+        flank[row - first_row] = vx + side * math.sqrt(max(0.0, r * r - rise * rise))
     return next_iy
 
 
 @numba.njit(nogil=True, cache=True)
-def _line(x0: float, y0: float, slope: float, iy: int, last: float, flank: FloatArray) -> int:
+def _line(
+    x0: float, y0: float, slope: float, iy: int, last: float, first_row: int, flank: FloatArray
+) -> int:
     """Fill rows from iy up to `last` with the line through (x0, y0); next row."""
     next_iy = max(iy, math.floor(last) + 1)
     for row in range(iy, next_iy):
-        flank[row] = x0 + (row - y0) * slope
+        flank[row - first_row] = x0 + (row - y0) * slope
     return next_iy
 
 

@@ -38,6 +38,8 @@ class Lattice:
         n_columns: Cells in x.
         n_directions: Directions a1 in a full turn, a multiple of 4.
         swings: The turns a2 of the vehicle against the arm, in whole directions, ascending.
+        first_row: Which row of the lattice that this is a band of its row 0 is; y is counted from
+            there, so that a node has the same coordinates in both to the last bit.
     """
 
     origin_mm: tuple[float, float]
@@ -46,6 +48,7 @@ class Lattice:
     n_columns: int
     n_directions: int
     swings: tuple[int, ...]
+    first_row: int = 0
 
     @classmethod
     def over(
@@ -103,7 +106,7 @@ class Lattice:
 
     def y_mm(self, iy: int) -> float:
         """y of the nodes in row iy."""
-        return self.origin_mm[1] + (iy + 0.5) * self.step_mm
+        return self.origin_mm[1] + (self.first_row + iy + 0.5) * self.step_mm
 
     def nearest_node(self, x_mm: float, y_mm: float) -> tuple[int, int] | None:
         """Node (iy, ix) of the cell that holds the point, or None outside the lattice."""
@@ -116,13 +119,19 @@ class Lattice:
     def window(self, rows: slice, columns: slice) -> "Lattice":
         """The part of the lattice in a window of rows and columns, both with start and stop."""
         x_mm = self.origin_mm[0] + columns.start * self.step_mm
-        y_mm = self.origin_mm[1] + rows.start * self.step_mm
+        y_mm = self.origin_mm[1] + (self.first_row + rows.start) * self.step_mm
         return replace(
             self,
             origin_mm=(x_mm, y_mm),
             n_rows=rows.stop - rows.start,
             n_columns=columns.stop - columns.start,
+            first_row=0,
         )
+
+    def band(self, rows: slice) -> "Lattice":
+        """Some rows of the lattice, with start and stop, in the same axes."""
+        first_row = self.first_row + rows.start
+        return replace(self, n_rows=rows.stop - rows.start, first_row=first_row)
 
     def directions(self) -> FloatArray:
         """Unit vectors u(2πk / n_directions), shape (n_directions, 2).

@@ -382,6 +382,7 @@ class Question(TypedDict):
     directions: int
     align: float | None
     engine: Literal["fast", "reference"]
+    memory: float
 
 
 QUESTION: Final[Group] = (
@@ -458,6 +459,16 @@ QUESTION: Final[Group] = (
         panel="The search",
         help="How poses are tested: row intervals, or one pose at a time, for audits of small "
         "plans, e.g. --engine reference. Both give the same answer.",
+    ),
+    click.option(
+        "--memory",
+        metavar="GB",
+        type=float,
+        default=1.0,
+        show_default=True,
+        panel="The search",
+        help="What the free poses may take in memory; a floor that would take more is searched in "
+        "bands of rows, with the same answer, e.g. --memory 4",
     ),
 )
 

@@ -13,25 +13,28 @@ class Stopwatch:
     """Times stages and passes on how far each has come.
 
     Attributes:
-        timing_s: Seconds each finished stage took, by name, in order.
+        timing_s: Seconds each stage has taken so far, by name, in order.
     """
 
     def __init__(self, progress: Progress | None = None) -> None:
         self._progress = progress
         self._stage = ""
+        self._shares = (0.0, 1.0)
         self.timing_s: dict[str, float] = {}
 
     @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        """Time what happens inside under a name."""
-        self._stage = name
+    def stage(self, name: str, begin: float = 0.0, end: float = 1.0) -> Iterator[None]:
+        """Time what happens inside under a name: all of a stage, or from one share to another."""
+        self._stage, self._shares = name, (begin, end)
         self.share(0.0)
         begin_s = time.perf_counter()
         yield
-        self.timing_s[name] = time.perf_counter() - begin_s
+        taken_s = time.perf_counter() - begin_s
+        self.timing_s[name] = self.timing_s.get(name, 0.0) + taken_s
         self.share(1.0)
 
     def share(self, done: float) -> None:
-        """Tell which share of the running stage is done."""
+        """Tell which share of what happens in the running stage is done."""
         if self._progress is not None:
-            self._progress(self._stage, done)
+            begin, end = self._shares
+            self._progress(self._stage, begin + (end - begin) * done)

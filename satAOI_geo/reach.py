@@ -9,8 +9,9 @@ follow any path through open free space as closely as wanted; how many manoeuvre
 not bounded.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from threading import Lock
 from typing import Final, NamedTuple
 
@@ -23,7 +24,8 @@ from satAOI_geo.freespace import FreeSpace, Move, moves, run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.robot import Robot
-from satAOI_geo.runs import Meeting, Runs, SliceRuns, paint, roots, unite
+from satAOI_geo.runs import Int32Array, Meeting, Runs, SliceRuns, roots, unite
+from satAOI_geo.stretches import Stretches, merged
 
 EVERYTHING: Final = slice(None)
 
@@ -69,24 +71,20 @@ class DiscComponents:
 
 
 @dataclass(frozen=True, slots=True)
-class PoseComponents:
-    """The pose-connected sets.
+class Band:
+    """The states of some rows of the lattice, and the sets that moves among these rows join.
 
     Attributes:
-        lattice: Nodes and directions.
+        lattice: The rows, as a band of the whole lattice.
         runs: The states, as runs.
-        labels: Shape (n_runs,): number of each run's set.
-        members: Shape (n_runs,): all runs, those of one set together, sets in order.
-        first: Shape (n + 1,): the runs of a set are members[first[label] : first[label + 1]].
-        boxes: Shape (n, 4), least row, least column, greatest row, greatest column of each set.
+        labels: Shape (n_runs,): number of each run's set, 0 .. n_sets - 1, all in use.
+        n_sets: How many sets there are.
     """
 
     lattice: Lattice
     runs: Runs
     labels: npt.NDArray[np.int32]
-    members: npt.NDArray[np.int64]
-    first: npt.NDArray[np.int64]
-    boxes: npt.NDArray[np.int64]
+    n_sets: int
 
     @classmethod
     def of(
@@ -95,7 +93,7 @@ class PoseComponents:
         robot: Robot,
         space: FreeSpace,
         progress: Callable[[float], None] | None = None,
-    ) -> "PoseComponents":
+    ) -> "Band":
         """Join all free states by all moves whose sweep is free."""
         lattice = space.lattice
         n_swings = len(lattice.swings)
@@ -120,63 +118,126 @@ class PoseComponents:
 
         run_threads(step_up, lattice.n_directions, share[1])
         run_threads(move, lattice.n_directions, share[2])
-        root = roots(joined.parents)
-        is_root = root == np.arange(root.size)
-        labels = (np.cumsum(is_root, dtype=np.int32) - 1)[root]
-        return cls._gathered(lattice, runs, labels)
+        labels, n_sets = _numbered(joined.parents)
+        return cls(lattice, runs, labels, n_sets)
+
+    def lowest_states(self) -> npt.NDArray[np.int64]:
+        """For each set a number that puts its states in the order of row, pose and column.
+
+        It is that of the first of them, and the same however the lattice is cut into bands.
+        """
+        lattice, runs = self.lattice, self.runs
+        n_poses = lattice.n_directions * len(lattice.swings)
+        line = (runs.rows().astype(np.int64) + lattice.first_row) * n_poses + runs.poses()
+        lowest = np.full(self.n_sets, np.iinfo(np.int64).max)
+        np.minimum.at(lowest, self.labels, line * lattice.n_columns + runs.begin)
+        return lowest
+
+    def on_row(self, iy: int) -> npt.NDArray[np.int32]:
+        """The sets of the runs on one of its rows, pose after pose."""
+        first = self.runs.first.reshape(-1, self.runs.first.shape[-1])
+        spans = zip(first[:, iy].tolist(), first[:, iy + 1].tolist(), strict=True)
+        return np.concatenate([self.labels[begin:end] for begin, end in spans])
+
+
+@dataclass(frozen=True, slots=True)
+class PoseComponents:
+    """The pose-connected sets, numbered in the order of their first state by row and pose.
+
+    Attributes:
+        lattice: Nodes and directions.
+        bands: The states, from the lowest rows up; the last row of a band is the first of the
+            next one.
+        numbers: For each band the number of each of its sets.
+        stretches: The nodes of each set.
+        boxes: Shape (n, 4), least row, least column, greatest row, greatest column of each set.
+    """
+
+    lattice: Lattice
+    bands: tuple[Band, ...]
+    numbers: tuple[npt.NDArray[np.int32], ...]
+    stretches: Stretches
+    boxes: npt.NDArray[np.int64]
 
     @classmethod
-    def _gathered(
-        cls, lattice: Lattice, runs: Runs, labels: npt.NDArray[np.int32]
-    ) -> "PoseComponents":
-        """The sets from the label of each run, labels 0 .. n - 1 all in use."""
-        members = np.argsort(labels, kind="stable")
-        first = np.concatenate(([0], np.cumsum(np.bincount(labels)))).astype(np.int64)
-        boxes = np.column_stack(
-            [
-                gather.reduceat(values[members], first[:-1])
-                for gather, values in (
-                    (np.minimum, runs.row),
-                    (np.minimum, runs.begin),
-                    (np.maximum, runs.row),
-                    (np.maximum, runs.end),
-                )
-            ]
-        ).astype(np.int64)
-        return cls(lattice, runs, labels, members, first, boxes)
+    def of(cls, lattice: Lattice, bands: Sequence[Band]) -> "PoseComponents":
+        """The sets of the whole lattice from those of its bands, lowest first."""
+        first = np.cumsum([0, *(band.n_sets for band in bands)])
+        parents = np.arange(first[-1], dtype=np.int32)
+        for k, (below, above) in enumerate(pairwise(bands)):
+            # the row that two bands share has the same runs in both
+            upper = below.on_row(below.lattice.n_rows - 1) + first[k]
+            lower = above.on_row(0) + first[k + 1]
+            unite(parents, np.column_stack((upper, lower)).astype(np.int32))
+        joined, n_sets = _numbered(parents)
+        lowest = np.full(n_sets, np.iinfo(np.int64).max)
+        np.minimum.at(lowest, joined, np.concatenate([band.lowest_states() for band in bands]))
+        place = np.empty(n_sets, dtype=np.int32)
+        place[np.argsort(lowest)] = np.arange(n_sets)
+        numbers = tuple(np.split(place[joined], first[1:-1]))
+        parts = [
+            _stretches(band, own, has_last_row=band is bands[-1])
+            for band, own in zip(bands, numbers, strict=True)
+        ]
+        labels, row, begin, end = (np.concatenate(part) for part in zip(*parts, strict=True))
+        stretches = Stretches.of(labels, row, begin, end, n_sets)
+        return cls(lattice, tuple(bands), numbers, stretches, stretches.boxes())
 
     def at(self, iy: int, ix: int, a1: int, swing: int) -> int | None:
         """The set that holds a state, or None when the state is not free."""
-        run = self.runs.holding(iy, ix)[a1, swing]
-        return None if run < 0 else int(self.labels[run])
+        label = int(self._labels_at(iy, ix)[a1, swing])
+        return None if label < 0 else label
 
     def at_node(self, iy: int, ix: int) -> list[int]:
         """The sets that hold some pose at a node, ascending."""
-        runs = self.runs.holding(iy, ix)
-        return [int(label) for label in np.unique(self.labels[runs[runs >= 0]])]
+        labels = np.unique(self._labels_at(iy, ix))
+        return [int(label) for label in labels[labels >= 0]]
 
     def straightest(self, iy: int, ix: int, label: int) -> State:
         """The state of a set at one of its nodes whose arm is straightest behind the vehicle."""
-        runs = self.runs.holding(iy, ix)
-        a1, swing = np.nonzero((runs >= 0) & (self.labels[runs] == label))
+        a1, swing = np.nonzero(self._labels_at(iy, ix) == label)
         bend = np.abs(self.lattice.swings)[swing]
         best = np.lexsort((a1, swing, bend))[0]
         return State(iy, ix, int(a1[best]), int(swing[best]))
 
-    def runs_of(self, label: int) -> npt.NDArray[np.int64]:
-        """The numbers of the runs of one set."""
-        return self.members[self.first[label] : self.first[label + 1]]
-
     def nodes(self, label: int, rows: slice = EVERYTHING, columns: slice = EVERYTHING) -> BoolArray:
         """The nodes at which the set has some pose, shape (n_rows, n_columns) or that of a window.
 
-        A window of rows must hold the whole set.
+        A window must hold the whole set.
         """
-        begin, end, _ = rows.indices(self.lattice.n_rows)
-        words = self.lattice.no_nodes()[begin:end]
-        paint(words, self.runs, self.runs_of(label), begin)
-        # in one piece: a kernel is compiled anew for arrays that lie scattered
-        return np.ascontiguousarray(self.lattice.unpacked(words)[:, columns])
+        return self.stretches.nodes(label, self.lattice, rows, columns)
+
+    def first_nodes(self) -> npt.NDArray[np.int32]:
+        """Row and column of the first node of each set, shape (n, 2)."""
+        first = self.stretches.first[:-1]
+        return np.column_stack((self.stretches.row[first], self.stretches.begin[first]))
+
+    def _labels_at(self, iy: int, ix: int) -> npt.NDArray[np.int32]:
+        """The set that holds each pose at a node, or -1; shape (n_directions, n_swings)."""
+        tops = [band.lattice.first_row + band.lattice.n_rows for band in self.bands]
+        number = int(np.searchsorted(tops, iy, side="right"))
+        band = self.bands[number]
+        runs = band.runs.holding(iy - band.lattice.first_row, ix)
+        labels = np.full(runs.shape, -1, dtype=np.int32)
+        labels[runs >= 0] = self.numbers[number][band.labels[runs[runs >= 0]]]
+        return labels
+
+
+def _stretches(
+    band: Band, numbers: npt.NDArray[np.int32], *, has_last_row: bool
+) -> tuple[Int32Array, Int32Array, Int32Array, Int32Array]:
+    """Set, row, first and last column of the stretches of a band's nodes, see `merged`."""
+    rows = band.runs.rows()
+    own = rows < band.lattice.n_rows - (not has_last_row)
+    labels, rows = numbers[band.labels[own]], rows[own] + np.int32(band.lattice.first_row)
+    return merged(labels, rows, band.runs.begin[own], band.runs.end[own])
+
+
+def _numbered(parents: npt.NDArray[np.int32]) -> tuple[npt.NDArray[np.int32], int]:
+    """The component of each member of a forest, in the order of their roots; how many there are."""
+    root = roots(parents)
+    is_root = root == np.arange(root.size)
+    return (np.cumsum(is_root, dtype=np.int32) - 1)[root], int(np.count_nonzero(is_root))
 
 
 class _Joined:

@@ -15,8 +15,8 @@ import numpy.typing as npt
 import scipy.sparse
 from scipy.sparse.csgraph import breadth_first_order
 
-from satAOI_geo.errors import NoRouteError
-from satAOI_geo.freespace import moves, run_threads
+from satAOI_geo.errors import LimitError, NoRouteError
+from satAOI_geo.freespace import free_space, moves, run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.reach import State
 from satAOI_geo.robot import Pose
@@ -76,12 +76,28 @@ class Route:
 
 
 class RouteMap:
-    """The runs of the start's component and what links them, for any number of routes."""
+    """The runs of the start's component and what links them, for any number of routes.
+
+    Raises:
+        LimitError: If the floor is so large that it was searched in bands.
+    """
 
     def __init__(self, found: Search) -> None:
+        if len(found.pose.bands) > 1:
+            raise LimitError(
+                "this floor is searched in bands of rows, and routes are found on floors that are "
+                f"searched at once; give more --memory than {found.settings.memory_gb:g} GB, a "
+                "coarser --step or a smaller --region",
+                limit="bands",
+                value=len(found.pose.bands),
+                allowed=1,
+            )
         self._search = found
+        (self._band,) = found.pose.bands
+        self._rows = self._band.runs.rows()
+        label = found.pose.numbers[0].tolist().index(found.start.pose_label)
         # numbers of the component's runs, ascending; below, a run is its place in this list
-        self._runs = found.pose.runs_of(found.start.pose_label)
+        self._runs = np.flatnonzero(self._band.labels == label)
         pairs = self._links()
         n_runs = self._runs.size
         keys = pairs[:, 0].astype(np.int64) * n_runs + pairs[:, 1]
@@ -92,7 +108,7 @@ class RouteMap:
             shape=(n_runs, n_runs),
         )
         iy, ix, a1, swing = found.start.state
-        start_run = found.pose.runs.holding(iy, ix)[a1, swing]
+        start_run = self._band.runs.holding(iy, ix)[a1, swing]
         self._start = int(np.searchsorted(self._runs, start_run))
         order, self._before = breadth_first_order(graph, self._start, directed=True)
         self._rank = np.empty(n_runs, dtype=np.int64)
@@ -137,10 +153,12 @@ class RouteMap:
     def _links(self) -> npt.NDArray[np.int64]:
         """What links the component's runs, both ways: a run, another, a column; shape (n, 3)."""
         found = self._search
-        inside = found.pose.labels == found.start.pose_label
+        inside = np.zeros(self._rows.size, dtype=np.bool_)
+        inside[self._runs] = True
+        space = free_space(found.engine, found.robot, found.lattice)
 
         def gather(a1: int) -> npt.NDArray[np.int32]:
-            runs, space = found.pose.runs, found.space
+            runs = self._band.runs
             pairs = [
                 Meeting.upwards(runs, (a1, swing)).links(space.steps(a1, swing, rows_up=1))
                 for swing in range(len(found.lattice.swings))
@@ -158,12 +176,12 @@ class RouteMap:
         self, at_mm: tuple[float, float]
     ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
         """For each run its first and last column whose disc covers a point; none: first > last."""
-        lattice, runs = self._search.lattice, self._search.pose.runs
+        lattice, runs = self._search.lattice, self._band.runs
         step_mm = lattice.step_mm
         x = (at_mm[0] - lattice.origin_mm[0]) / step_mm - 0.5
         y = (at_mm[1] - lattice.origin_mm[1]) / step_mm - 0.5
         radius = self._search.robot.disc_radius_mm / step_mm
-        rise = runs.row[self._runs] - y
+        rise = self._rows[self._runs] - y
         # where the disc's row does not come near the point the half width is not a number
         half = np.sqrt(np.where(np.abs(rise) <= radius, radius**2 - rise**2, np.nan))
         nowhere = np.isnan(half)
@@ -176,10 +194,10 @@ class RouteMap:
 
     def _state(self, run: int, ix: int) -> State:
         """The state of a run at a column."""
-        runs = self._search.pose.runs
+        runs = self._band.runs
         number = int(self._runs[run])
         pose = int(np.searchsorted(runs.first[:, :, 0].ravel(), number, side="right")) - 1
-        return State(int(runs.row[number]), ix, *divmod(pose, runs.first.shape[1]))
+        return State(int(self._rows[number]), ix, *divmod(pose, runs.first.shape[1]))
 
 
 def _kind(a: State, b: State) -> MoveKind:

@@ -25,13 +25,11 @@ class Runs:
     Attributes:
         first: Shape (n_directions, n_swings, n_rows + 1): the runs of row iy at a pose are those
             from first[a1, swing, iy] up to, not including, first[a1, swing, iy + 1].
-        row: Shape (n_runs,), row of each run.
         begin: Shape (n_runs,), first column of each run.
         end: Shape (n_runs,), last column of each run.
     """
 
     first: IntArray
-    row: Int32Array
     begin: Int32Array
     end: Int32Array
 
@@ -41,14 +39,23 @@ class Runs:
         flat = [one for row in slices for one in row]
         offsets = np.cumsum([0, *(one.begin.size for one in flat)])
         firsts = np.array([one.first for one in flat])
-        rows = np.tile(np.arange(firsts.shape[1] - 1, dtype=np.int32), len(flat))
         first = firsts + offsets[:-1, np.newaxis]
         return cls(
             first.reshape(len(slices), len(slices[0]), -1),
-            np.repeat(rows, np.diff(firsts, axis=1).ravel()),
             np.concatenate([one.begin for one in flat]),
             np.concatenate([one.end for one in flat]),
         )
+
+    def rows(self) -> Int32Array:
+        """Row of each run, shape (n_runs,)."""
+        n_directions, n_swings, n_ends = self.first.shape
+        rows = np.tile(np.arange(n_ends - 1, dtype=np.int32), n_directions * n_swings)
+        return np.repeat(rows, np.diff(self.first, axis=2).ravel())
+
+    def poses(self) -> Int32Array:
+        """Pose of each run, a1 · n_swings + swing, shape (n_runs,)."""
+        counts = (self.first[..., -1] - self.first[..., 0]).ravel()
+        return np.repeat(np.arange(counts.size, dtype=np.int32), counts)
 
     def holding(self, iy: int, ix: int) -> IntArray:
         """The run that holds each pose at a node, or -1; shape (n_directions, n_swings)."""
@@ -132,12 +139,9 @@ def roots(parents: Int32Array) -> Int32Array:
     return parents
 
 
-def paint(words: Words, runs: Runs, chosen: IntArray, first_row: int) -> None:
-    """Set the bits of all nodes of the chosen runs, given by number, at whatever pose.
-
-    The first row of words stands for row `first_row` of the lattice.
-    """
-    _paint(words, runs.row[chosen] - first_row, runs.begin[chosen], runs.end[chosen])
+def paint(words: Words, row: Int32Array, begin: Int32Array, end: Int32Array) -> None:
+    """Set the bits of stretches of rows, shape (n,) each, from begin to end, both included."""
+    _paint(words, row, begin, end)
 
 
 @numba.njit(nogil=True, cache=True)

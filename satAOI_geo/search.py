@@ -1,24 +1,32 @@
 """The search: plan → free space → connected sets → start."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
+
+import numpy as np
 
 from satAOI_geo.align import wall_direction_rad
 from satAOI_geo.collision import Collider, Reference
 from satAOI_geo.engine import Engine
 from satAOI_geo.errors import InputError, NothingFreeError
-from satAOI_geo.freespace import FreeSpace, free_space
+from satAOI_geo.freespace import free_space
 from satAOI_geo.intervals import Intervals
-from satAOI_geo.lattice import Lattice
+from satAOI_geo.lattice import WORD_BITS, Lattice
 from satAOI_geo.plan import BoolArray, FloorPlan
 from satAOI_geo.progress import Stopwatch
-from satAOI_geo.reach import DiscComponents, PoseComponents
+from satAOI_geo.reach import Band, DiscComponents, PoseComponents
 from satAOI_geo.robot import Robot
 from satAOI_geo.start import Start, StartFinder, StartMark
 from satAOI_geo.units import MM2_PER_M2
 
 Connectivity: TypeAlias = Literal["disc", "pose"]
+
+BYTES_PER_GB: Final = 1e9
+
+SPACES_AT_ONCE: Final = 3
+"""A free space, its runs, and what is in the hands of the threads take this many times its size."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,9 +41,11 @@ class Settings:
         align_rad: Direction of the lattice in the drawing; None lays it along most of the walls.
         engine: `fast`, or `reference` to ask the exact collision test node by node.
         exact_outline: Keep the scallops between neighbouring discs in the outline.
+        memory_gb: What the free space may take; a floor that would take more is searched in bands
+            of rows, with the same answer.
 
     Raises:
-        InputError: If the clearance or the direction is not a usable number.
+        InputError: If the clearance, the direction or the memory is not a usable number.
     """
 
     connectivity: Connectivity = "pose"
@@ -45,12 +55,15 @@ class Settings:
     align_rad: float | None = None
     engine: Literal["fast", "reference"] = "fast"
     exact_outline: bool = False
+    memory_gb: float = 1.0
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.clearance_mm) and self.clearance_mm >= 0):
             raise InputError(f"the clearance is {self.clearance_mm:g} mm; give 0 or more")
         if self.align_rad is not None and not math.isfinite(self.align_rad):
             raise InputError(f"the lattice's direction is {self.align_rad:g}; give an angle")
+        if not self.memory_gb > 0:
+            raise InputError(f"the memory is {self.memory_gb:g} GB; give more than 0")
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +76,8 @@ class Search:
         settings: What the search was made with.
         lattice: Nodes and directions.
         engine: Tells where a part touches something.
-        space: The free poses.
         free: Nodes at which some pose is free, shape (n_rows, n_columns).
+        n_states: How many (node, pose) pairs are free.
         disc: The disc-connected sets.
         pose: The pose-connected sets.
         start: Where the robot is set down.
@@ -75,8 +88,8 @@ class Search:
     settings: Settings
     lattice: Lattice
     engine: Engine
-    space: FreeSpace
     free: BoolArray
+    n_states: int
     disc: DiscComponents
     pose: PoseComponents
     start: Start
@@ -114,10 +127,8 @@ def search(
     lattice = Lattice.over(
         plan.floor.bounds, robot, step_mm=settings.step_mm, n_directions=settings.n_directions
     )
-    with watch.stage("free space"):
-        engine = _engine(plan, robot, lattice, settings)
-        space = free_space(engine, robot, lattice, watch.share)
-        free = space.free_nodes()
+    engine = _engine(plan, robot, lattice, settings)
+    free, n_states, bands = _explored(engine, robot, lattice, settings.memory_gb, watch)
     if not free.any():
         raise NothingFreeError(
             f"robot '{robot.name}' fits nowhere on this floor of {plan.floor.area / MM2_PER_M2:.2f}"
@@ -125,7 +136,7 @@ def search(
         )
     with watch.stage("reach"):
         disc = DiscComponents.of(free)
-        pose = PoseComponents.of(engine, robot, space, watch.share)
+        pose = PoseComponents.of(lattice, bands)
         finder = StartFinder(
             plan, robot, Collider(plan, robot, settings.clearance_mm), free, disc, pose
         )
@@ -134,14 +145,43 @@ def search(
             if mark is None
             else finder.at(mark.turned(turn_rad))
         )
-    return Search(plan, robot, settings, lattice, engine, space, free, disc, pose, found)
+    return Search(plan, robot, settings, lattice, engine, free, n_states, disc, pose, found)
+
+
+def _explored(
+    engine: Engine, robot: Robot, lattice: Lattice, memory_gb: float, watch: Stopwatch
+) -> tuple[BoolArray, int, list[Band]]:
+    """Nodes at which some pose is free, how many states are, and the states band by band."""
+    free = np.empty(lattice.shape, dtype=np.bool_)
+    n_states, bands = 0, []
+    for rows in _bands(lattice, memory_gb):
+        here, band = engine.band(rows), lattice.band(rows)
+        share = rows.start / lattice.n_rows, rows.stop / lattice.n_rows
+        with watch.stage("free space", *share):
+            space = free_space(here, robot, band, watch.share)
+            free[rows] = space.free_nodes()
+            # the last row is the next band's, too
+            own = band.n_rows - (rows.stop < lattice.n_rows)
+            n_states += space.n_states(slice(own))
+        with watch.stage("reach", *share):
+            bands.append(Band.of(here, robot, space, watch.share))
+    return free, n_states, bands
+
+
+def _bands(lattice: Lattice, memory_gb: float) -> Iterator[slice]:
+    """Rows of the lattice whose free space fits in memory, each with the first row of the next."""
+    n_poses = lattice.n_directions * len(lattice.swings)
+    row_bytes = n_poses * -(-lattice.n_columns // WORD_BITS) * WORD_BITS // 8
+    n_rows = max(int(memory_gb * BYTES_PER_GB / (SPACES_AT_ONCE * row_bytes)), 1)
+    for begin in range(0, lattice.n_rows, n_rows):
+        yield slice(begin, min(begin + n_rows + 1, lattice.n_rows))
 
 
 def _engine(plan: FloorPlan, robot: Robot, lattice: Lattice, settings: Settings) -> Engine:
     """The engine the settings name."""
     if settings.engine == "reference":
         return Reference(Collider(plan, robot, settings.clearance_mm), lattice)
-    return Intervals(plan, robot, lattice, settings.clearance_mm)
+    return Intervals.of(plan, robot, lattice, settings.clearance_mm)
 
 
 DEFAULTS: Final = Settings()

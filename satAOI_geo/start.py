@@ -132,9 +132,8 @@ class StartFinder:
     def largest(self, connectivity: Literal["disc", "pose"]) -> Start:
         """The start that trowels the largest area, by the connectivity that is asked for."""
         lattice, disc_mm = self.pose.lattice, self.robot.disc_radius_mm
-        one_run_each = self.pose.members[self.pose.first[:-1]]
-        runs = self.pose.runs
-        disc_of_pose = self.disc.labels[runs.row[one_run_each], runs.begin[one_run_each]]
+        one_node_each = self.pose.first_nodes()
+        disc_of_pose = self.disc.labels[one_node_each[:, 0], one_node_each[:, 1]]
         labels = np.arange(disc_of_pose.size)
         if connectivity == "disc":
             best = largest(self.disc, range(len(self.disc.boxes)), lattice, disc_mm)

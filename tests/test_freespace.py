@@ -46,7 +46,7 @@ class Setting:
         )
 
     def engine(self, plan: FloorPlan) -> Intervals:
-        return Intervals(plan, self.robot, self.lattice(plan), self.clearance_mm)
+        return Intervals.of(plan, self.robot, self.lattice(plan), self.clearance_mm)
 
     def space(self, plan: FloorPlan) -> FreeSpace:
         return free_space(self.engine(plan), self.robot, self.lattice(plan))

@@ -15,7 +15,7 @@ from satAOI_geo.freespace import free_space
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray, Circle, FloorPlan, Obstacle
-from satAOI_geo.reach import DiscComponents, PoseComponents
+from satAOI_geo.reach import Band, DiscComponents, PoseComponents
 from satAOI_geo.robot import ROBOTS, Robot
 from tests import plans
 from tests.drawn import ROOM, plan_of
@@ -72,11 +72,17 @@ class Found:
 
     def labels(self) -> Labels:
         """The number of each state's set, shaped as `free`, -1 where it is not."""
-        free, runs = self.free, self.poses.runs
+        free, (band,) = self.free, self.poses.bands
+        widths = band.runs.end - band.runs.begin + 1
         labels = np.full(free.shape, -1, dtype=np.int32)
         # runs are ordered as the states are, and hold them all
-        labels[free] = np.repeat(self.poses.labels, runs.end - runs.begin + 1)
+        labels[free] = np.repeat(numbers_of(self.poses), widths)
         return labels
+
+
+def numbers_of(poses: PoseComponents) -> Labels:
+    """The number of each run's set."""
+    return poses.numbers[0][poses.bands[0].labels]
 
 
 @lru_cache(maxsize=20)
@@ -88,12 +94,12 @@ def found(
     n_directions: int = FINE // 2,
 ) -> Found:
     lattice = Lattice.over(plan.floor.bounds, robot, step_mm=STEP_MM, n_directions=n_directions)
-    engine = Intervals(plan, robot, lattice, clearance_mm)
+    engine = Intervals.of(plan, robot, lattice, clearance_mm)
     space = free_space(engine, robot, lattice)
     return Found(
         lattice,
         space.words,
-        PoseComponents.of(engine, robot, space),
+        PoseComponents.of(lattice, [Band.of(engine, robot, space)]),
         DiscComponents.of(space.free_nodes()),
     )
 
@@ -171,7 +177,7 @@ def test_plan_shifted_by_whole_cells_shifts_all_that_is_found(
 ) -> None:
     before, after = found(plan), found(plans.shifted(plan, cells[0] * STEP_MM, cells[1] * STEP_MM))
     assert np.array_equal(before.words, after.words)
-    assert np.array_equal(before.poses.labels, after.poses.labels)
+    assert np.array_equal(numbers_of(before.poses), numbers_of(after.poses))
     assert np.array_equal(before.discs.labels, after.discs.labels)
 
 
@@ -180,7 +186,7 @@ def test_order_of_the_obstacles_does_not_matter(plan: FloorPlan) -> None:
     before = found(plan)
     after = found(replace(plan, obstacles=plan.obstacles[::-1]))
     assert np.array_equal(before.words, after.words)
-    assert np.array_equal(before.poses.labels, after.poses.labels)
+    assert np.array_equal(numbers_of(before.poses), numbers_of(after.poses))
 
 
 def test_threads_find_the_same_numbers_every_time() -> None:
@@ -188,9 +194,10 @@ def test_threads_find_the_same_numbers_every_time() -> None:
     for _ in range(4):
         found.cache_clear()
         again = found(DRAWN[0]).poses
-        for name in ("first", "row", "begin", "end"):
-            assert np.array_equal(getattr(first.runs, name), getattr(again.runs, name))
-        assert np.array_equal(first.labels, again.labels)
+        for name in ("first", "begin", "end"):
+            one, other = first.bands[0].runs, again.bands[0].runs
+            assert np.array_equal(getattr(one, name), getattr(other, name))
+        assert np.array_equal(numbers_of(first), numbers_of(again))
         assert np.array_equal(first.boxes, again.boxes)
 
 
@@ -268,7 +275,7 @@ def test_block_cut_in_two_blocks_as_much_as_the_whole() -> None:
     whole = found(plan_of(ROOM, box(1310, 900, 2210, 1700)))
     halves = found(plan_of(ROOM, box(1310, 900, 1777, 1700), box(1777, 900, 2210, 1700)))
     assert np.array_equal(whole.words, halves.words)
-    assert np.array_equal(whole.poses.labels, halves.poses.labels)
+    assert np.array_equal(numbers_of(whole.poses), numbers_of(halves.poses))
 
 
 def test_obstacle_within_another_changes_nothing() -> None:
@@ -305,4 +312,4 @@ def test_obstacle_off_the_floor_changes_nothing() -> None:
     outside = Obstacle(box(right_mm, -5000, right_mm + 9000, 9000), plan.obstacles[0].kind)
     before, after = found(plan), found(replace(plan, obstacles=(*plan.obstacles, outside)))
     assert np.array_equal(before.words, after.words)
-    assert np.array_equal(before.poses.labels, after.poses.labels)
+    assert np.array_equal(numbers_of(before.poses), numbers_of(after.poses))

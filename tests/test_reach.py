@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from satAOI_geo.freespace import FreeSpace, free_space, moves
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import Circle, FloorPlan
-from satAOI_geo.reach import DiscComponents, PoseComponents
+from satAOI_geo.reach import Band, DiscComponents, PoseComponents
 from satAOI_geo.robot import ROBOTS, Robot, unit
 from satAOI_geo.units import MM2_PER_M2
 from tests import drawn, plans
@@ -25,9 +26,9 @@ PROTOTYPE = ROBOTS["magicbim"]
 def searched(
     plan: FloorPlan, robot: Robot, lattice: Lattice, clearance_mm: float = 0.0
 ) -> tuple[FreeSpace, PoseComponents]:
-    engine = Intervals(plan, robot, lattice, clearance_mm)
+    engine = Intervals.of(plan, robot, lattice, clearance_mm)
     space = free_space(engine, robot, lattice)
-    return space, PoseComponents.of(engine, robot, space)
+    return space, PoseComponents.of(lattice, [Band.of(engine, robot, space)])
 
 
 def numbered(lattice: Lattice, state: State) -> tuple[int, int, int, int]:
@@ -129,8 +130,8 @@ def test_slow_engine_finds_the_same_sets() -> None:
     lattice = Lattice.over(plan.floor.bounds, PROTOTYPE, step_mm=250.0, n_directions=4)
     space, fast = searched(plan, PROTOTYPE, lattice)
     reference = Reference(Collider(plan, PROTOTYPE), lattice)
-    slow = PoseComponents.of(reference, PROTOTYPE, space)
-    assert np.array_equal(slow.labels, fast.labels)
+    slow = Band.of(reference, PROTOTYPE, space)
+    assert np.array_equal(slow.labels, fast.bands[0].labels)
 
 
 @pytest.mark.parametrize("seed", [41, 42])
@@ -143,7 +144,7 @@ def test_disc_connected_set_is_what_algorithm_2_reaches(seed: int) -> None:
         poses = np.ndindex(lattice.n_directions, len(lattice.swings))
         return any(collider.is_free(lattice.pose(*node, a1, swing)) for a1, swing in poses)
 
-    space = free_space(Intervals(plan, PROTOTYPE, lattice), PROTOTYPE, lattice)
+    space = free_space(Intervals.of(plan, PROTOTYPE, lattice), PROTOTYPE, lattice)
     discs = DiscComponents.of(space.free_nodes())
     covered: set[Node] = set()
     for label in range(len(discs.boxes)):
@@ -290,7 +291,7 @@ def test_pole_stops_the_moves_that_sweep_over_it(
     plan = drawn.plan_of(box(-2000, -2000, 2000, 2000), Circle(x_mm, y_mm, 1.0))
     # one cell, its centre the origin
     lattice = Lattice.over(plan.floor.bounds, robot, step_mm=4000.0)
-    engine = Intervals(plan, robot, lattice)
+    engine = Intervals.of(plan, robot, lattice)
     space = free_space(engine, robot, lattice)
     straight = lattice.swings.index(0)
     names = {(1, straight): "turn", (0, straight + 1): "swing", (1, straight - 1): "orbit"}
@@ -334,9 +335,35 @@ def test_sets_together_hold_every_free_state_once(seed: int) -> None:
     plan = plans.random_plan(seed, n_obstacles=6, side_mm=(3000, 4500))
     lattice = Lattice.over(plan.floor.bounds, PROTOTYPE, step_mm=50.0, n_directions=12)
     space, poses = searched(plan, PROTOTYPE, lattice)
-    runs = poses.runs
+    runs = poses.bands[0].runs
     assert (runs.end - runs.begin + 1).sum() == space.n_states()
-    gathered = [run for label in range(len(poses.boxes)) for run in poses.runs_of(label)]
-    assert sorted(gathered) == list(range(runs.begin.size))
     nodes = [poses.nodes(label) for label in range(len(poses.boxes))]
     assert np.array_equal(np.any(nodes, axis=0), space.free_nodes())
+
+
+@pytest.mark.parametrize("seed", range(71, 77))
+def test_floor_cut_into_bands_has_the_same_sets(seed: int) -> None:
+    plan = plans.random_plan(seed, n_obstacles=6, side_mm=(3000, 4500))
+    lattice = Lattice.over(plan.floor.bounds, PROTOTYPE, step_mm=50.0, n_directions=12)
+    engine = Intervals.of(plan, PROTOTYPE, lattice)
+    noise = np.random.default_rng(seed)
+    inner = noise.choice(
+        np.arange(1, lattice.n_rows), size=int(noise.integers(1, 9)), replace=False
+    )
+    cuts = [0, *np.sort(inner).tolist(), lattice.n_rows]
+    bands = []
+    for begin, end in pairwise(cuts):
+        # each has the first row of the next
+        rows = slice(begin, min(end + 1, lattice.n_rows))
+        here = engine.band(rows)
+        bands.append(Band.of(here, PROTOTYPE, free_space(here, PROTOTYPE, lattice.band(rows))))
+    cut = PoseComponents.of(lattice, bands)
+    _, whole = searched(plan, PROTOTYPE, lattice)
+    for name in ("first", "row", "begin", "end"):
+        assert np.array_equal(getattr(cut.stretches, name), getattr(whole.stretches, name))
+    for iy, ix in noise.integers(0, lattice.shape, size=(60, 2)).tolist():
+        assert cut.at_node(iy, ix) == whole.at_node(iy, ix)
+        for label in whole.at_node(iy, ix):
+            state = whole.straightest(iy, ix, label)
+            assert cut.straightest(iy, ix, label) == state
+            assert cut.at(*state) == label
