@@ -27,6 +27,7 @@ from satAOI_geo.plan import Finding, FloorPlan, Kind, Obstacle, Source
 from tests.drawings import drawing, rectangle
 
 SAMPLES = Path(__file__).parents[1] / "samples"
+CORPUS = Path(__file__).parents[2] / "shared" / "corpus"
 
 
 def inspected(document: Drawing, folder: Path, **options: object) -> Inspected:
@@ -224,6 +225,24 @@ def test_a_storey_of_a_model_is_drawn_as_its_plan() -> None:
     assert found.plan is not None
     titles = [title.text for title in elements(page, "title")]
     assert {obstacle.label() for obstacle in found.plan.obstacles} <= set(titles)
+
+
+@pytest.mark.skipif(not CORPUS.is_dir(), reason="the corpus of drawings is absent")
+@pytest.mark.parametrize(
+    ("name", "options", "n_parts", "numbers"),
+    [("d02", {"units": "m"}, 6, []), ("d03", {}, 1, ["1", "1", "2", "2"])],
+)
+def test_a_drawing_of_other_people_is_drawn_with_all_that_was_understood(
+    name: str, options: dict[str, str], n_parts: int, numbers: list[str]
+) -> None:
+    (path,) = (CORPUS / "dxf").glob(f"{name}_*")
+    found = inspect_plan(path, ReadOptions(**options))
+    page = page_of(found)
+    titles = {title.text for title in elements(page, "title")}
+    assert {obstacle.label() for obstacle in found.plan.obstacles} <= titles
+    frames = {f"plan {number}" for number in range(1, n_parts + 1)} if n_parts > 1 else set()
+    assert {title for title in titles if title.startswith("plan ")} == frames
+    assert sorted(labels(page, RED)) == numbers
 
 
 def test_a_model_is_drawn_only_if_that_is_asked_for() -> None:
