@@ -13,6 +13,8 @@ from satAOI_adapters.dxf_read.inspection import Inspection, LayerFigures
 from satAOI_adapters.files import json_of
 from satAOI_adapters.layers import Certainty, Meaning
 from satAOI_geo import DrawingError, UnitError
+from tests.drawings import drawing as drawing_in_mm
+from tests.drawings import rectangle
 
 SAMPLES = Path(__file__).parents[1] / "samples"
 
@@ -154,6 +156,21 @@ def test_plans_are_numbered_with_their_corners(drawing: Path) -> None:
     found = inspected(drawing).plans
     assert [plan.number for plan in found] == [1, 2]
     assert {plan.bounds for plan in found} == {(1, 1, 5, 4), (20, 0, 24, 3)}
+
+
+def test_a_plan_is_read_by_the_number_that_it_is_listed_with(tmp_path: Path) -> None:
+    document = drawing_in_mm(floor=False)
+    # four rooms of equal rank, on layers in turn
+    for i, layer in enumerate(("WALL", "A-WALL", "WALL", "S-WALL")):
+        rectangle(document.modelspace(), 20_000 * i, 0, 20_000 * i + 5000, 4000, layer=layer)
+    path = tmp_path / "rooms.dxf"
+    document.saveas(path)
+    found = inspected(path).plans
+    assert len(found) == 4
+    for plan in found:
+        read = read_plan(path, ReadOptions(plan=plan.number))
+        left, bottom = read.frame.to_drawing((0, 0))
+        assert (left, bottom) == (plan.bounds[0], plan.bounds[1])
 
 
 def test_the_json_holds_the_same(drawing: Path) -> None:

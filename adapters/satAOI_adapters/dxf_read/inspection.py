@@ -10,6 +10,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.entities import Feature
+from satAOI_adapters.dxf_read.meaning import Seen
 from satAOI_adapters.dxf_read.obstacles import area_of
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.plans import Drawn, clusters
@@ -124,17 +125,12 @@ def inspect(path: Path, options: ReadOptions) -> Inspected[Inspection]:
         LimitError: If it asks for more than `limits` allows.
     """
     drawing = survey(path, options)
-    plan: FloorPlan | None = None
-    error: SatAoiError | None = None
-    try:
-        plan = plan_of(drawing, options)
-    except SatAoiError as reason:
-        error = reason
+    plan, error = _plan_or_error(drawing, options)
     is_measured = not isinstance(drawing.known, UnitError)
     # without a unit the drawing can still be seen, if not measured
     frame = drawing.frame() if is_measured else drawing.frame_in(1.0)
-    tallies = _tallies(drawing, frame)
-    sketch = _sketch(tallies, frame, with_parts=is_measured)
+    drawn = list(drawn_by(drawing.seen, frame))
+    sketch = _sketch(drawn, frame, with_parts=is_measured)
     findings = drawing.findings if plan is None else plan.findings
     figures = Inspection(
         source=_source(drawing),
@@ -142,12 +138,21 @@ def inspect(path: Path, options: ReadOptions) -> Inspected[Inspection]:
         bounds=drawing.box,
         size_mm=_size(drawing.box, frame.mm_per_unit) if is_measured else None,
         plans=_plans(sketch),
-        layers=_layers(tallies, drawing.expansion.hidden, is_measured=is_measured),
+        layers=_layers(_tallies(drawn), drawing.expansion.hidden, is_measured=is_measured),
         findings=findings,
         error="" if error is None else str(error),
     )
     layers = _layer_map(drawing, layer_table(options.layers))
     return Inspected(figures, findings, plan, error, sketch, layers)
+
+
+def _plan_or_error(
+    drawing: Survey, options: ReadOptions
+) -> tuple[FloorPlan | None, SatAoiError | None]:
+    try:
+        return plan_of(drawing, options), None
+    except SatAoiError as error:
+        return None, error
 
 
 def _source(drawing: Survey) -> Source:
@@ -156,10 +161,10 @@ def _source(drawing: Survey) -> Source:
     return drawing.source()
 
 
-def _tallies(drawing: Survey, frame: Frame) -> dict[tuple[str, Verdict], _Tally]:
+def _tallies(drawn: Iterable[tuple[Seen, list[Feature]]]) -> dict[tuple[str, Verdict], _Tally]:
     """What each layer holds, by what it is taken for."""
     tallies: dict[tuple[str, Verdict], _Tally] = {}
-    for entity, features in drawn_by(drawing.seen, frame):
+    for entity, features in drawn:
         tally = tallies.setdefault((entity.placed.layer, entity.verdict), _Tally())
         tally.entities[entity.placed.kind] += 1
         tally.features.extend(features)
@@ -212,17 +217,18 @@ def _covered(feature: Feature) -> list[BaseGeometry]:
 
 
 def _sketch(
-    tallies: Mapping[tuple[str, Verdict], _Tally], frame: Frame, *, with_parts: bool
+    drawn: Iterable[tuple[Seen, list[Feature]]], frame: Frame, *, with_parts: bool
 ) -> Sketch:
     """All lines, by the kind of obstacle that they are drawn as."""
     lines: defaultdict[Kind | None, list[LineString]] = defaultdict(list)
-    drawn: Drawn = {meaning: [] for meaning in PART_SIGNS}
-    for (_, verdict), tally in tallies.items():
-        kind = None if verdict.meaning is None else KINDS.get(verdict.meaning)
-        lines[kind].extend(middle_line(path) for f in tally.features for path in f.paths)
-        if verdict.meaning in drawn:
-            drawn[verdict.meaning].extend(tally.features)
-    parts = clusters(drawn) if with_parts else []
+    telling: Drawn = {meaning: [] for meaning in PART_SIGNS}
+    for entity, features in drawn:
+        meaning = entity.verdict.meaning
+        kind = None if meaning is None else KINDS.get(meaning)
+        lines[kind].extend(middle_line(path) for f in features for path in f.paths)
+        if meaning in telling:
+            telling[meaning].extend(features)
+    parts = clusters(telling) if with_parts else []
     return Sketch(frame, lines, [part.bounds_mm for part in parts])
 
 
