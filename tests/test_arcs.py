@@ -7,7 +7,7 @@ import pytest
 import shapely
 from shapely.geometry import LinearRing, box
 
-from satAOI_adapters.dxf_write.arcs import RISE_MM, loop_with_arcs, outline_with_arcs
+from satAOI_adapters.arcs import RISE_MM, loop_with_arcs, outline_with_arcs
 from satAOI_geo.aoi import Loop
 from satAOI_geo.plan import polygons_in
 from tests import results
@@ -62,11 +62,22 @@ def test_what_was_drawn_with_corners_keeps_them(drawn: LinearRing) -> None:
     assert not loop.vertices[:, 2].any()
 
 
+@pytest.mark.parametrize("width_mm", [0.0, 1e-6])
+def test_spikes_and_repeated_corners_are_left_out(width_mm: float) -> None:
+    corners = [(0, 0), (9, 0), (9, 5), (12, 5), (12, 5), (9, 5 + width_mm), (9, 9), (0, 9), (0, 9)]
+    loop = loop_with_arcs(LinearRing(corners))
+    left = {(x, y) for x, y, _ in loop.vertices.round(3).tolist()}
+    assert left == {(0, 0), (9, 0), (9, 5), (9, 9), (0, 9)}
+    assert loop.area_mm2() == pytest.approx(81, abs=1e-4)
+
+
 def test_no_patch_is_drawn_farther_off_than_the_rise_of_its_arcs() -> None:
     regions = [patch.region for patch in results.furnished_result().patches if not patch.narrow]
     for polygon in polygons_in(regions):
         drawn = outline_with_arcs(polygon).polygon(RISE_MM / 4)
-        assert shapely.hausdorff_distance(drawn.boundary, polygon.boundary) <= RISE_MM
+        corners = shapely.points(shapely.get_coordinates(drawn))
+        assert shapely.distance(corners, polygon.boundary).max() <= RISE_MM
+        assert drawn.area == pytest.approx(polygon.area, abs=RISE_MM * polygon.length)
 
 
 def test_patches_beside_discs_are_drawn_with_far_fewer_corners() -> None:

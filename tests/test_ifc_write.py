@@ -13,6 +13,7 @@ import pytest
 from satAOI_adapters import ifc_write, read_plan
 from satAOI_geo.errors import InputError, UnreadableError
 from satAOI_geo.pipeline import Result, area_of_interest
+from satAOI_geo.plan import FloatArray
 from satAOI_geo.search import Settings
 from tests.ifc_models import Pen
 from tests.results import furnished_result
@@ -105,24 +106,40 @@ def test_the_model_is_valid_with_what_was_added(written: tuple[Path, Path, Resul
     assert after == before
 
 
+def triangles(zone: ifcopenshell.entity_instance) -> FloatArray:
+    """The body as the kernel sees it, in metres: corners of triangles, shape (n, 3, 3)."""
+    settings = ifcopenshell.geom.settings()
+    settings.set("mesher-linear-deflection", 1e-5)
+    settings.set("use-world-coords", v=True)
+    shape = ifcopenshell.geom.create_shape(settings, zone).geometry
+    return np.array(shape.verts).reshape(-1, 3)[np.array(shape.faces).reshape(-1, 3)]
+
+
+def area_m2(corners: FloatArray) -> float:
+    """Of all triangles that look up."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+    return float(normals[normals[:, 2] > 0, 2].sum())
+
+
 def test_the_body_has_the_area_of_interest(written: tuple[Path, Path, Result]) -> None:
     _, target, result = written
     # entities do not keep their model alive
     model = ifcopenshell.open(target)
     (zone,) = zones(model, ifc_write.AOI_TYPE)
-    settings = ifcopenshell.geom.settings()
-    settings.set("mesher-linear-deflection", 1e-5)
-    settings.set("use-world-coords", v=True)
-    shape = ifcopenshell.geom.create_shape(settings, zone).geometry
-    corners = np.array(shape.verts).reshape(-1, 3)[np.array(shape.faces).reshape(-1, 3)]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
-    area_m2 = normals[normals[:, 2] > 0, 2].sum()
+    corners = triangles(zone)
     # the kernel's chords leave the arcs by a hundredth of a millimetre
-    assert area_m2 == pytest.approx(result.aoi.area_mm2 / 1e6, rel=1e-5)
+    assert area_m2(corners) == pytest.approx(result.aoi.area_mm2 / 1e6, rel=1e-5)
     assert corners[..., 2].min() == pytest.approx(0.3)
     floor = result.plan.frame.to_drawing_mm(np.array(result.plan.floor.exterior.coords)) / 1000
     assert corners[..., 0].min() >= floor[:, 0].min()
     assert corners[..., 1].max() <= floor[:, 1].max()
+
+
+def test_a_patch_has_a_body_of_its_area(written: tuple[Path, Path, Result]) -> None:
+    model = ifcopenshell.open(written[1])
+    for zone in zones(model, ifc_write.UNREACHED_TYPE):
+        # its arcs are drawn up to 0.02 mm beside its edge, of a few metres
+        assert area_m2(triangles(zone)) == pytest.approx(properties(zone)["Area"], abs=2e-4)
 
 
 def test_figures_and_reasons_stand_in_property_sets(written: tuple[Path, Path, Result]) -> None:

@@ -8,7 +8,7 @@ from ezdxf.entities import DXFGraphic
 from ezdxf.layouts import Modelspace
 from ezdxf.lldxf.const import MTEXT_MIDDLE_CENTER
 
-from satAOI_adapters.dxf_write.arcs import outline_with_arcs
+from satAOI_adapters.arcs import outline_with_arcs
 from satAOI_adapters.dxf_write.layers import (
     AOI,
     EDGE,

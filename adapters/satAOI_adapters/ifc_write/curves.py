@@ -1,6 +1,7 @@
 """Closed curves in IFC, arcs kept as arcs."""
 
 from collections.abc import Iterator
+from typing import Final
 
 import ifcopenshell
 import numpy as np
@@ -9,8 +10,9 @@ from ifcopenshell import entity_instance
 from satAOI_geo.aoi import Loop
 from satAOI_geo.plan import FloatArray
 
-SAGITTA_MM = 0.01
-"""How far chords may leave arcs where a curve must be a polyline: in IFC2X3."""
+SAGITTA_MM: Final = 0.5
+"""How far chords may leave arcs where a curve must be a polyline: in IFC2X3. The area stays.
+Each chord is a face of the body, and over thousands of them geometry kernels take minutes."""
 
 
 def closed_curve(
@@ -20,7 +22,7 @@ def closed_curve(
     if model.schema == "IFC2X3":
         # composite curves of trimmed circles are read differently by different programs
         points_mm = Loop(vertices).equal_area_points_mm(SAGITTA_MM)
-        return closed_polyline(model, points_mm / mm_per_unit)
+        return _closed_polyline(model, points_mm / mm_per_unit)
     bulges = vertices[:, 2]
     corners_mm = vertices[:, :2]
     middles_mm = _middles_mm(vertices)[bulges != 0]
@@ -32,7 +34,7 @@ def closed_curve(
     )
 
 
-def closed_polyline(model: ifcopenshell.file, points: FloatArray) -> entity_instance:
+def _closed_polyline(model: ifcopenshell.file, points: FloatArray) -> entity_instance:
     """Straight lines through points, shape (n, 2), in the model's unit, and back to the first."""
     made = [model.create_entity("IfcCartesianPoint", point) for point in points.tolist()]
     return model.create_entity("IfcPolyline", [*made, made[0]])

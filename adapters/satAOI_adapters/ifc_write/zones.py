@@ -9,13 +9,14 @@ import ifcopenshell
 import ifcopenshell.guid
 import numpy as np
 from ifcopenshell import entity_instance
-from shapely.geometry import Polygon
 
+from satAOI_adapters.arcs import outline_with_arcs
 from satAOI_adapters.ifc_write import AOI_TYPE, UNREACHED_TYPE
-from satAOI_adapters.ifc_write.curves import closed_curve, closed_polyline
+from satAOI_adapters.ifc_write.curves import closed_curve
 from satAOI_geo import __version__
+from satAOI_geo.aoi import Outline
 from satAOI_geo.pipeline import Result
-from satAOI_geo.plan import FloatArray, Frame, polygons_in
+from satAOI_geo.plan import Frame, polygons_in
 from satAOI_geo.reasons import SENTENCES, Patch
 from satAOI_geo.units import MM2_PER_M2
 
@@ -71,13 +72,7 @@ class _Writer:
     def area(self) -> entity_instance:
         """The area of interest with its figures."""
         result, figures = self._result, self._result.report
-        bodies = [
-            self._body(
-                self._curve(outline.exterior.vertices),
-                [self._curve(hole.vertices) for hole in outline.holes],
-            )
-            for outline in result.aoi.outlines
-        ]
+        bodies = [self._body(outline) for outline in result.aoi.outlines]
         zone = self._zone("Area of interest", AOI_TYPE, bodies)
         x_mm, y_mm = figures.start.xy_mm
         narrow_m2 = sum(patch.area_m2 for patch in figures.unreached if patch.narrow)
@@ -107,7 +102,7 @@ class _Writer:
             yield self._patch(number, patch)
 
     def _patch(self, number: int, patch: Patch) -> entity_instance:
-        bodies = [self._polygon_body(part) for part in polygons_in([patch.region])]
+        bodies = [self._body(outline_with_arcs(part)) for part in polygons_in([patch.region])]
         zone = self._zone(f"Not reached {number}: {patch.reason}", UNREACHED_TYPE, bodies)
         properties = {
             "Area": self._area_m2(patch.area_mm2 / MM2_PER_M2),
@@ -200,18 +195,12 @@ class _Writer:
             **own,
         )
 
-    def _curve(self, vertices: FloatArray) -> entity_instance:
-        return closed_curve(self._model, vertices, self._frame.mm_per_unit)
-
-    def _polygon_body(self, region: Polygon) -> entity_instance:
+    def _body(self, outline: Outline) -> entity_instance:
         exterior, *holes = (
-            closed_polyline(self._model, np.asarray(ring.coords)[:-1] / self._frame.mm_per_unit)
-            for ring in (region.exterior, *region.interiors)
+            closed_curve(self._model, loop.vertices, self._frame.mm_per_unit)
+            for loop in (outline.exterior, *outline.holes)
         )
-        return self._body(exterior, holes)
-
-    def _body(self, exterior: entity_instance, holes: Sequence[entity_instance]) -> entity_instance:
-        inner = {"InnerCurves": list(holes)} if holes else {}
+        inner = {"InnerCurves": holes} if holes else {}
         profile = self._new(
             "IfcArbitraryProfileDefWithVoids" if holes else "IfcArbitraryClosedProfileDef",
             ProfileType="AREA",

@@ -1,7 +1,7 @@
 """Arcs found again in rings whose corners were set on them.
 
 What is cut out of the floor arrives as polygons with chords for arcs: thousands of corners, where
-a drawing says the same with a few arcs. Points are complex numbers here, x_mm + 1j * y_mm.
+a drawing or a model says the same with a few arcs. Points are complex numbers here, x_mm + 1j y_mm.
 """
 
 import math
@@ -25,12 +25,15 @@ ALIKE_MM: Final = 0.001
 """Corners share a circle when their centres are this close. They lie on it up to the rounding of
 coordinates, which over chords so flat moves the centre by a ten-thousandfold."""
 
+TRIANGLE: Final = 3
+"""Corners that a ring must have."""
+
 
 def outline_with_arcs(polygon: Polygon) -> Outline:
     """A polygon as an outline of straight lines and arcs, nowhere `RISE_MM` away from it.
 
-    Where the polygon is narrower than that, at the tip between two arcs, the outline may cross
-    itself.
+    Spikes narrower than `ALIKE_MM` are left out. Where the polygon is narrower than the arcs rise,
+    at the tip between two of them, the outline may cross itself.
     """
     exterior, *holes = map(loop_with_arcs, (polygon.exterior, *polygon.interiors))
     return Outline(exterior, tuple(holes))
@@ -38,7 +41,7 @@ def outline_with_arcs(polygon: Polygon) -> Outline:
 
 def loop_with_arcs(ring: LinearRing) -> Loop:
     """A ring with an arc wherever three chords or more lie in one circle."""
-    corners = shapely.get_coordinates(ring)[:-1].view(np.complex128)[:, 0]
+    corners = _without_spikes(shapely.get_coordinates(ring)[:-1].view(np.complex128)[:, 0])
     before, after = _neighbours(corners)
     centres, bends_left = _circles(corners, before, after)
     inner = _within_arcs(corners, before, after, centres)
@@ -59,6 +62,25 @@ def loop_with_arcs(ring: LinearRing) -> Loop:
     bulges = np.zeros(begins.size)
     bulges[curved] = np.tan(spans_rad / 4)
     return Loop(np.column_stack((corners[begins].real, corners[begins].imag, bulges)))
+
+
+def _without_spikes(corners: Points) -> Points:
+    """The corners but for those that repeat the one before, and those where the ring turns back.
+
+    Cutting floor out of floor leaves both, and geometry kernels stumble over them.
+    """
+    before, after = _neighbours(corners)
+    back, ahead = before - corners, after - corners
+    lengths_mm = np.abs(back), np.abs(ahead)
+    product = back.conj() * ahead
+    # how far apart the two sides of a corner are where the shorter one ends
+    width_mm = np.abs(product.imag) / np.maximum(np.maximum(*lengths_mm), ALIKE_MM)
+    is_spike = (product.real > 0) & (width_mm <= ALIKE_MM)
+    kept = corners[~is_spike & (lengths_mm[0] > ALIKE_MM)]
+    if len(kept) == len(corners) or len(kept) < TRIANGLE:
+        return corners
+    # without its tip a spike may have another one
+    return _without_spikes(kept)
 
 
 def _neighbours(values: Points) -> tuple[Points, Points]:
