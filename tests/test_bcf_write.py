@@ -2,6 +2,7 @@
 
 import re
 import zipfile
+from importlib.util import find_spec
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -90,6 +91,21 @@ def test_elements_stand_in_the_order_of_the_schema(written: tuple[Path, Result])
                 if order is not None and len(element):
                     places = [order.index(child.tag) for child in element]
                     assert places == sorted(places), element.tag
+
+
+def test_every_member_is_valid_by_the_schemas_of_buildingsmart(
+    written: tuple[Path, Result],
+) -> None:
+    etree = pytest.importorskip("lxml.etree")
+    package = find_spec("bcf_api_xml")
+    if package is None or package.origin is None:
+        pytest.skip("bcf-api-xml, which brings the schemas of BCF 2.1, is not installed")
+    folder = Path(package.origin).parent / "Schemas"
+    schemas = {".version": "version.xsd", ".bcf": "markup.xsd", ".bcfv": "visinfo.xsd"}
+    with zipfile.ZipFile(written[0]) as archive:
+        for name in archive.namelist():
+            schema = etree.XMLSchema(etree.parse(folder / schemas[Path(name).suffix]))
+            schema.assertValid(etree.fromstring(archive.read(name)))
 
 
 def test_guids_have_the_form_of_guids_and_agree(written: tuple[Path, Result]) -> None:
