@@ -3,6 +3,7 @@
 import os
 import time
 from pathlib import Path
+from typing import NoReturn
 
 
 def squared(number: int) -> int:
@@ -14,19 +15,22 @@ def refused(number: int) -> int:
 
 
 def squared_the_second_time(mark_and_number: tuple[Path, int]) -> int:
-    """End the process at the first try, as when it is killed."""
+    """End the process at the first try."""
     mark, number = mark_and_number
-    try:
-        mark.touch(exist_ok=False)
-    except FileExistsError:
-        return number * number
-    time.sleep(0.5)
-    os._exit(9)
+    if not mark.exists():
+        mark.touch()
+        die()
+    return number * number
 
 
 def deadly_if_one(number: int) -> int:
     if number == 1:
-        # Dask replaces a worker that dies, but not one that dies as it starts
-        time.sleep(0.5)
-        os._exit(9)
+        die()
     return number * number
+
+
+def die() -> NoReturn:
+    """End the process, as when it is killed."""
+    # Dask replaces a worker that dies, but not one that dies as it starts
+    time.sleep(1.5)
+    os._exit(9)

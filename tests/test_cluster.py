@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,22 +17,43 @@ from tests import cluster_jobs as jobs
 WHERE = ["processes", "dask"]
 
 
+@contextmanager
+def dask_cluster(n_workers: int) -> Iterator[Any]:
+    """A Dask scheduler with some workers on this machine, and what stops them."""
+    distributed = pytest.importorskip("distributed")
+    dask = pytest.importorskip("dask")
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 1}),
+        distributed.LocalCluster(
+            n_workers=n_workers, threads_per_worker=1, dashboard_address=":0", memory_limit=0
+        ) as cluster,
+    ):
+        yield cluster
+
+
 @pytest.fixture(scope="module")
 def scheduler() -> Iterator[str]:
-    """Address of a Dask scheduler with two workers."""
-    distributed = pytest.importorskip("distributed")
-    cluster = distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=":0", memory_limit=0
-    )
-    yield cluster.scheduler_address
-    cluster.close()
+    with dask_cluster(n_workers=2) as cluster:
+        yield cluster.scheduler_address
+
+
+@pytest.fixture
+def doomed_scheduler() -> Iterator[str]:
+    """One whose workers may die: Dask replaces them, but not always."""
+    with dask_cluster(n_workers=2) as cluster:
+        yield cluster.scheduler_address
 
 
 @contextmanager
-def crew(where: str, request: pytest.FixtureRequest) -> Iterator[Workers]:
-    scheduler = request.getfixturevalue("scheduler") if where == "dask" else None
-    with workers(n_workers=None if scheduler else 2, scheduler=scheduler) as working:
-        yield working
+def crew(
+    where: str, request: pytest.FixtureRequest, scheduler: str = "scheduler"
+) -> Iterator[Workers]:
+    if where == "processes":
+        with workers(n_workers=2) as working:
+            yield working
+    else:
+        with workers(scheduler=request.getfixturevalue(scheduler)) as working:
+            yield working
 
 
 @pytest.mark.parametrize("where", WHERE)
@@ -66,7 +88,7 @@ def test_a_worker_that_dies_changes_no_answer(
     tasks = [(tmp_path / ("mark" if n in {1, 2} else f"mark {n}"), n) for n in range(4)]
     (tmp_path / "mark 0").touch()
     (tmp_path / "mark 3").touch()
-    with crew(where, request) as working:
+    with crew(where, request, "doomed_scheduler") as working:
         outcomes = list(working.outcomes(jobs.squared_the_second_time, tasks))
     assert {outcome.number: outcome.value() for outcome in outcomes} == {0: 0, 1: 1, 2: 4, 3: 9}
 
@@ -75,7 +97,7 @@ def test_a_worker_that_dies_changes_no_answer(
 def test_a_task_that_kills_every_worker_is_given_up_and_the_others_are_not(
     where: str, request: pytest.FixtureRequest
 ) -> None:
-    with crew(where, request) as working:
+    with crew(where, request, "doomed_scheduler") as working:
         outcomes = list(working.outcomes(jobs.deadly_if_one, range(4)))
     by_number = {outcome.number: outcome for outcome in outcomes}
     assert [by_number[n].value() for n in (0, 2, 3)] == [0, 4, 9]
@@ -84,12 +106,9 @@ def test_a_task_that_kills_every_worker_is_given_up_and_the_others_are_not(
 
 
 def test_the_loss_of_all_workers_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    distributed = pytest.importorskip("distributed")
     monkeypatch.setattr("satAOI_adapters.cluster.LOST_S", 1)
     with (
-        distributed.LocalCluster(
-            n_workers=1, threads_per_worker=1, dashboard_address=":0"
-        ) as cluster,
+        dask_cluster(n_workers=1) as cluster,
         workers(scheduler=cluster.scheduler_address) as working,
     ):
         outcomes = working.outcomes(jobs.squared, range(1000))
@@ -140,10 +159,9 @@ def test_workers_that_cannot_be_are_refused(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_scheduler_without_workers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    distributed = pytest.importorskip("distributed")
     monkeypatch.setattr("satAOI_adapters.cluster.CONNECT_S", 1)
     with (
-        distributed.LocalCluster(n_workers=0, dashboard_address=":0") as cluster,
+        dask_cluster(n_workers=0) as cluster,
         pytest.raises(InputError, match="has no workers"),
         workers(scheduler=cluster.scheduler_address),
     ):
