@@ -18,12 +18,10 @@ it stands for; a record SATAOI in the root dictionary holds the settings of the 
 
 from pathlib import Path
 
-from satAOI_adapters.dxf_write.document import base_document, file_bytes
-from satAOI_adapters.dxf_write.layers import STYLES, add_layers
+from satAOI_adapters.dxf_write.layers import STYLES
 from satAOI_adapters.dxf_write.legend import note_rows
-from satAOI_adapters.dxf_write.metadata import add_appid, record_run
-from satAOI_adapters.dxf_write.note import draw_note
-from satAOI_adapters.dxf_write.place import entity_bounds, floor_bounds, text_height
+from satAOI_adapters.dxf_write.output import drawing
+from satAOI_adapters.dxf_write.place import floor_bounds, text_height
 from satAOI_adapters.dxf_write.scene import (
     draw_area,
     draw_plan,
@@ -32,7 +30,6 @@ from satAOI_adapters.dxf_write.scene import (
     draw_zones,
     send_to_back,
 )
-from satAOI_adapters.files import refuse_unfit_target, written_whole
 from satAOI_geo.pipeline import Result
 
 __all__ = ["write"]
@@ -51,23 +48,10 @@ def write(path: Path, result: Result) -> None:
         InputError: If the file must not or cannot be written.
         UnreadableError: If the input drawing is gone or was changed since it was read.
     """
-    source = result.plan.source
-    inputs = [Path(source.path)] if source.path else []
-    refuse_unfit_target(path, inputs)
-    document = base_document(result.plan)
-    add_layers(document, STYLES)
-    add_appid(document)
-    space = document.modelspace()
-    # before anything is drawn into it: what comes on top lies within the plan
-    taken = entity_bounds(space)
-    draw_plan(space, result)
-    draw_zones(space, result)
-    hatches = draw_area(space, result)
-    hatches += draw_unreached(space, result, text_height(floor_bounds(result.plan)))
-    draw_start(space, result)
-    draw_note(space, result.plan, note_rows(result), taken)
-    send_to_back(document, hatches)
-    record_run(document, result)
-    data = file_bytes(document)
-    with written_whole(path, never_over=inputs) as stream:
-        stream.write(data)
+    with drawing(path, result, STYLES, note_rows(result)) as space:
+        draw_plan(space, result)
+        draw_zones(space, result)
+        hatches = draw_area(space, result)
+        hatches += draw_unreached(space, result, text_height(floor_bounds(result.plan)))
+        draw_start(space, result)
+        send_to_back(space, hatches)

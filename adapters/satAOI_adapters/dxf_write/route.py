@@ -18,15 +18,12 @@ from typing import Final
 import numpy as np
 from ezdxf.layouts import Modelspace
 
-from satAOI_adapters.dxf_write.document import base_document, file_bytes
-from satAOI_adapters.dxf_write.layers import ROBOT, ROUTE, ROUTE_STYLES, START, add_layers
+from satAOI_adapters.dxf_write.layers import ROBOT, ROUTE, ROUTE_STYLES, START
 from satAOI_adapters.dxf_write.legend import Row, Swatch, point_in_words
-from satAOI_adapters.dxf_write.metadata import add_appid, attach, record_run
-from satAOI_adapters.dxf_write.note import draw_note
+from satAOI_adapters.dxf_write.metadata import attach
+from satAOI_adapters.dxf_write.output import drawing
 from satAOI_adapters.dxf_write.pen import Pen
-from satAOI_adapters.dxf_write.place import entity_bounds
 from satAOI_adapters.dxf_write.scene import draw_start
-from satAOI_adapters.files import refuse_unfit_target, written_whole
 from satAOI_adapters.route_write import lines_of
 from satAOI_geo.aoi import Loop
 from satAOI_geo.pipeline import Result
@@ -55,23 +52,10 @@ def write(path: Path, result: Result, route: Route) -> None:
         InputError: If the file must not or cannot be written.
         UnreadableError: If the input drawing is gone or was changed since it was read.
     """
-    source = result.plan.source
-    inputs = [Path(source.path)] if source.path else []
-    refuse_unfit_target(path, inputs)
-    document = base_document(result.plan)
-    add_layers(document, ROUTE_STYLES)
-    add_appid(document)
-    space = document.modelspace()
-    # before anything is drawn into it: what comes on top lies within the plan
-    taken = entity_bounds(space)
-    draw_robots(space, result, route)
-    draw_way(space, result, route)
-    draw_start(space, result)
-    draw_note(space, result.plan, note_rows(result, route), taken)
-    record_run(document, result)
-    data = file_bytes(document)
-    with written_whole(path, never_over=inputs) as stream:
-        stream.write(data)
+    with drawing(path, result, ROUTE_STYLES, note_rows(result, route)) as space:
+        draw_robots(space, result, route)
+        draw_way(space, result, route)
+        draw_start(space, result)
 
 
 def draw_robots(space: Modelspace, result: Result, route: Route) -> None:

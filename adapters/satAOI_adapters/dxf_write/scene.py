@@ -3,7 +3,6 @@
 import math
 from typing import Final
 
-from ezdxf.document import Drawing
 from ezdxf.entities import DXFGraphic
 from ezdxf.layouts import Modelspace
 from ezdxf.lldxf.const import MTEXT_MIDDLE_CENTER
@@ -128,13 +127,12 @@ def draw_plan(space: Modelspace, result: Result) -> None:
             attach(entity, facts)
 
 
-def send_to_back(document: Drawing, hatches: list[DXFGraphic]) -> None:
+def send_to_back(space: Modelspace, hatches: list[DXFGraphic]) -> None:
     """Put hatches below everything else, the first of them lowest.
 
     Some draw entities in the order of the file and know no transparency, others by a table of
     handles. The table deals the handles in use out again in the new order, as those programs do.
     """
-    space = document.modelspace()
     behind = {hatch.dxf.handle for hatch in hatches}
     redrawn = [e.dxf.handle for e in space.entities_in_redraw_order()]
     wanted = [*sorted(behind, key=_as_number), *(h for h in redrawn if h not in behind)]
@@ -142,7 +140,8 @@ def send_to_back(document: Drawing, hatches: list[DXFGraphic]) -> None:
     space.set_redraw_order([(own, sort) for own, sort in dealt if own != sort])
     entities = space.entity_space.entities
     entities[:] = [*hatches, *(e for e in entities if e.dxf.handle not in behind)]
-    document.header["$SORTENTS"] = document.header.get("$SORTENTS", 0) | SORT_WHEN_DRAWN
+    header = space.doc.header
+    header["$SORTENTS"] = header.get("$SORTENTS", 0) | SORT_WHEN_DRAWN
 
 
 def _filled(
