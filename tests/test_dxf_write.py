@@ -481,7 +481,7 @@ for number, path in enumerate(pickled):
 def test_bytes_do_not_depend_on_the_hash_seed_or_the_time(tmp_path: Path) -> None:
     whole = results.furnished_result()
     # the kernels' data do not travel between processes, and no writer looks at them
-    new = replace(whole, search=replace(whole.search, engine=None, space=None, pose=None))
+    new = replace(whole, search=replace(whole.search, engine=None, pose=None))
     plan = drawing_file(tmp_path / "plan.dxf", "R2018")
     over = results.on_drawing(new, plan, "mm", Frame())
     for name, result in (("new", new), ("over", over)):

@@ -23,8 +23,9 @@ from satAOI_adapters.ifc_read.floor import (
     floor_region,
     open_cuts,
 )
-from satAOI_adapters.ifc_read.model import Storey, body_items, handle_of, openings_of
+from satAOI_adapters.ifc_read.model import body_items, handle_of, openings_of
 from satAOI_adapters.ifc_read.prisms import RECESS_MM, View, as_polygon
+from satAOI_adapters.ifc_read.records import Storey
 from satAOI_adapters.ifc_read.site import Site
 from satAOI_geo.errors import EmptyPlanError
 from satAOI_geo.plan import Region, as_region

@@ -15,6 +15,7 @@ from satAOI_adapters.ifc_read.classes import Choice, wholes_of
 from satAOI_adapters.ifc_read.names import printable
 from satAOI_adapters.ifc_read.placement import PlacementError, world_matrix
 from satAOI_adapters.ifc_read.profiles import Units
+from satAOI_adapters.ifc_read.records import Storey
 from satAOI_geo.errors import EmptyPlanError, InputError, UnitError, UnreadableError
 from satAOI_geo.plan import Finding
 from satAOI_geo.units import MM_PER_UNIT
@@ -27,27 +28,6 @@ SAME_HEIGHT_MM: Final = 1.0
 
 COUNTED: Final = ("IfcWall", "IfcColumn", "IfcSlab", "IfcOpeningElement")
 """Classes counted per storey."""
-
-
-@dataclass(frozen=True, slots=True)
-class Storey:
-    """A storey, with the height of its floor.
-
-    Attributes:
-        number: From 1, the lowest storey first.
-        name: As in the model; may be empty.
-        handle: GlobalId.
-        elevation_mm: Height of the floor in the model.
-        attribute_mm: Its attribute Elevation, or None; only informative.
-        counts: Elements by class of `COUNTED`.
-    """
-
-    number: int
-    name: str
-    handle: str
-    elevation_mm: float
-    attribute_mm: float | None
-    counts: dict[str, int]
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from satAOI_adapters.ifc_read import text
 from satAOI_adapters.ifc_read.options import IfcOptions
 from satAOI_adapters.ifc_read.parsable import alias_findings, has_raw_names, parsable
 from satAOI_adapters.ifc_read.process import answered
-from satAOI_adapters.ifc_read.records import Inspected, ModelRecord, Read, Request, StoreyRecord
+from satAOI_adapters.ifc_read.records import Inspected, ModelRecord, Read, Request, Storey
 from satAOI_geo.plan import (
     Circle,
     Finding,
@@ -58,7 +58,7 @@ class Inspection:
     source: Source
     schema_name: str
     mm_per_unit: float
-    storeys: tuple[StoreyRecord, ...]
+    storeys: tuple[Storey, ...]
     classes: dict[str, int]
     findings: tuple[Finding, ...]
 
@@ -98,7 +98,7 @@ def inspect(path: Path, options: IfcOptions) -> Inspection:
         mm_per_unit=model.mm_per_unit,
         storeys=tuple(model.storeys),
         classes=model.classes,
-        findings=(*alias_findings(data), *(record.finding() for record in model.findings)),
+        findings=(*alias_findings(data), *model.findings),
     )
 
 
@@ -141,11 +141,10 @@ def plan_of(answer: Read, source: Source) -> FloorPlan:
         mm_per_unit=answer.model.mm_per_unit,
     )
     obstacles = (record.obstacle() for record in answer.obstacles)
-    findings = (record.finding() for record in (*answer.model.findings, *answer.findings))
     return FloorPlan(
         floor=as_region(shapely.make_valid(_local(floor, shift_mm))),
         obstacles=tuple(o for obstacle in obstacles for o in _moved(obstacle, shift_mm)),
-        findings=tuple(findings),
+        findings=(*answer.model.findings, *answer.findings),
         floor_source=answer.floor_source,
         frame=frame,
         source=replace(source, storey=answer.storey, height_mm=answer.height_mm),

@@ -4,6 +4,7 @@ JSON rather than pickles, so that whatever a hostile model does to that process,
 words.
 """
 
+from dataclasses import dataclass
 from typing import Annotated, Literal, TypeAlias
 
 import shapely
@@ -67,33 +68,6 @@ class Failed(Record):
     handle: str = ""
 
 
-class FindingRecord(Record):
-    """A finding."""
-
-    code: str
-    message: str
-    remedy: str
-    layer: str
-    handle: str
-    at_mm: tuple[float, float] | None
-
-    @classmethod
-    def of(cls, finding: Finding) -> "FindingRecord":
-        """The record of a finding."""
-        return cls(
-            code=finding.code,
-            message=finding.message,
-            remedy=finding.remedy,
-            layer=finding.layer,
-            handle=finding.handle,
-            at_mm=finding.at_mm,
-        )
-
-    def finding(self) -> Finding:
-        """The finding that was recorded."""
-        return Finding(self.code, self.message, self.remedy, self.layer, self.handle, self.at_mm)
-
-
 class ObstacleRecord(Record):
     """An obstacle."""
 
@@ -117,8 +91,18 @@ class ObstacleRecord(Record):
         return Obstacle(decoded(self.shape), self.kind, self.layer, self.handle)
 
 
-class StoreyRecord(Record):
-    """A storey; see `model.Storey`."""
+@dataclass(frozen=True, slots=True)
+class Storey:
+    """A storey, with the height of its floor.
+
+    Attributes:
+        number: From 1, the lowest storey first.
+        name: As in the model; may be empty.
+        handle: GlobalId.
+        elevation_mm: Height of the floor in the model.
+        attribute_mm: Its attribute Elevation, or None; only informative.
+        counts: Elements by class of `model.COUNTED`.
+    """
 
     number: int
     name: str
@@ -143,9 +127,9 @@ class ModelRecord(Record):
     schema_name: str
     unit: str
     mm_per_unit: float
-    storeys: list[StoreyRecord]
+    storeys: list[Storey]
     classes: dict[str, int]
-    findings: list[FindingRecord]
+    findings: list[Finding]
 
 
 class Inspected(Record):
@@ -177,7 +161,7 @@ class Read(Record):
     floor_source: str
     height_mm: float
     obstacles: list[ObstacleRecord]
-    findings: list[FindingRecord]
+    findings: list[Finding]
 
     def region(self) -> Region:
         """The floor."""

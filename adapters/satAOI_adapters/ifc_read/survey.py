@@ -12,7 +12,8 @@ from satAOI_adapters.ifc_read.bodies import Body, NoBodyError
 from satAOI_adapters.ifc_read.classes import blocks, kind_of
 from satAOI_adapters.ifc_read.floor import STEP_MM, closing
 from satAOI_adapters.ifc_read.ground import Ground, ground_of
-from satAOI_adapters.ifc_read.model import Storey, body_items, handle_of
+from satAOI_adapters.ifc_read.model import body_items, handle_of
+from satAOI_adapters.ifc_read.records import Storey
 from satAOI_adapters.ifc_read.site import Site, Standing, called
 from satAOI_geo.errors import DrawingError, EmptyPlanError
 from satAOI_geo.plan import Finding, Kind, Obstacle, Region, polygons_in

@@ -7,7 +7,6 @@ C++ library; what it does to this process on a hostile model, it does to this pr
 import os
 import sys
 from collections import Counter
-from dataclasses import asdict
 from pathlib import Path
 from typing import Final, TextIO
 
@@ -17,7 +16,6 @@ from ifcopenshell import entity_instance
 from satAOI_adapters.ifc_read.classes import chosen_classes
 from satAOI_adapters.ifc_read.flaws import Flaws
 from satAOI_adapters.ifc_read.model import (
-    Storey,
     chosen_storey,
     handle_of,
     open_model,
@@ -29,14 +27,13 @@ from satAOI_adapters.ifc_read.profiles import Units
 from satAOI_adapters.ifc_read.records import (
     Begun,
     Failed,
-    FindingRecord,
     Inspected,
     ModelRecord,
     ObstacleRecord,
     Read,
     Record,
     Request,
-    StoreyRecord,
+    Storey,
     encoded_region,
 )
 from satAOI_adapters.ifc_read.site import Site
@@ -95,7 +92,7 @@ class Worker:
         by_height = options.floor_z is not None and options.storey is None
         storey = None if by_height else chosen_storey(storeys, options.storey)
         if storey is not None and options.storey is None and len(storeys) > 1:
-            described.findings.append(FindingRecord.of(_only_used(storey)))
+            described.findings.append(_only_used(storey))
         # each element is begun twice: for its box and for its body
         self._n_steps = 2 * max(1, len(model.by_type("IfcElement")))
         site = Site.of(model, units, choice, flaws, self._begin)
@@ -113,7 +110,7 @@ class Worker:
             floor_source=read.floor_source,
             height_mm=read.height_mm,
             obstacles=[ObstacleRecord.of(obstacle) for obstacle in read.obstacles],
-            findings=[FindingRecord.of(finding) for finding in read.findings],
+            findings=list(read.findings),
         )
 
     def _begin(self, product: entity_instance) -> None:
@@ -152,9 +149,9 @@ def _model_record(
         schema_name=model.schema_identifier,
         unit=unit,
         mm_per_unit=units.mm,
-        storeys=[StoreyRecord(**asdict(storey)) for storey in storeys],
+        storeys=storeys,
         classes=dict(sorted(Counter(p.is_a() for p in model.by_type("IfcProduct")).items())),
-        findings=[FindingRecord.of(finding) for finding in findings],
+        findings=findings,
     )
 
 
