@@ -32,7 +32,7 @@ def between(a: Pose, b: Pose) -> list[Pose]:
 def points_in_the_area(found: Search, seed: int, n: int) -> list[tuple[float, float]]:
     """Points, in mm, that the disc covers from a reached node, at random."""
     draw = random.Random(seed)  # noqa: S311  a sample, not a secret
-    nodes = np.argwhere(found.pose.nodes(found.start.pose_label)).tolist()
+    nodes = np.argwhere(found.pose.nodes(found.start.pose_label).as_array()).tolist()
     # a hair inside the disc, for rounding
     within_mm = found.robot.disc_radius_mm - 0.1
     points_mm = []

@@ -15,6 +15,7 @@ from benchmarks.question import ROBOT, Contender, Figures, Question, largest_set
 from satAOI_geo.aoi import area
 from satAOI_geo.freespace import free_space
 from satAOI_geo.intervals import Intervals
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.pipeline import area_of_interest
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.progress import Stopwatch
@@ -45,26 +46,26 @@ def disc_connected(question: Question) -> BoolArray:
     lattice = question.lattice
     free = free_space(Intervals.of(question.plan, ROBOT, lattice), ROBOT, lattice).free_nodes()
     area(largest_set(free), lattice, ROBOT.disc_radius_mm)
-    return free
+    return free.as_array()
 
 
 def pose_connected(question: Question) -> BoolArray:
     """This project: what motions join with the start, too."""
     found = search(question.plan, ROBOT, DEFAULTS, start=None, watch=Stopwatch())
     area(found.pose.nodes(found.start.pose_label), found.lattice, ROBOT.disc_radius_mm)
-    return found.free
+    return found.free.as_array()
 
 
 def whole_answer(question: Question) -> BoolArray:
     """This project: zones, set-downs, reasons and the report, too."""
-    return area_of_interest(question.plan, ROBOT).search.free
+    return area_of_interest(question.plan, ROBOT).search.free.as_array()
 
 
 def plain_raster(question: Question) -> BoolArray:
     """The raster as one writes it."""
     occupied = PlainSlider(question.images.occupied, beyond=True)
     free = free_nodes(occupied, question.lattice, ROBOT)
-    reached = PlainSlider(largest_set(free), beyond=False)
+    reached = PlainSlider(largest_set(Nodes.of(free)).as_array(), beyond=False)
     troweled_cells(reached, question.lattice, ROBOT)
     return free
 
@@ -74,6 +75,6 @@ def tuned_raster(question: Question) -> BoolArray:
     rim = rim_of_footprints(ROBOT, question.lattice)
     occupied = TunedSlider(question.images.occupied, beyond=True, rim=rim)
     free = free_nodes(occupied, question.lattice, ROBOT)
-    reached = TunedSlider(largest_set(free), beyond=False, rim=rim)
+    reached = TunedSlider(largest_set(Nodes.of(free)).as_array(), beyond=False, rim=rim)
     troweled_cells(reached, question.lattice, ROBOT)
     return free

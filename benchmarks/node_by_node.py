@@ -16,6 +16,7 @@ from benchmarks.question import ROBOT, Contender, Figures, Question
 from satAOI_geo.aoi import area
 from satAOI_geo.collision import Collider
 from satAOI_geo.lattice import Lattice
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import BoolArray, FloorPlan
 
 NEIGHBOURS: Final = [step for step in itertools.product((-1, 0, 1), repeat=2) if step != (0, 0)]
@@ -46,7 +47,7 @@ def reference(question: Question) -> Figures:
     """The exact reference of this project."""
     lattice, reached = question.lattice, question.images.reached
     fits = ReferenceLoop(question.plan, lattice).fits
-    area_s = timed_once(lambda: area(reached, lattice, ROBOT.disc_radius_mm)).clock_s
+    area_s = timed_once(lambda: area(Nodes.of(reached), lattice, ROBOT.disc_radius_mm)).clock_s
     return extrapolated(question, fits, area_s)
 
 

@@ -16,6 +16,7 @@ from benchmarks.cells import occupied_cells
 from satAOI_geo.freespace import free_space
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import BoolArray, FloorPlan
 from satAOI_geo.reach import DiscComponents
 from satAOI_geo.robot import PROTOTYPE
@@ -41,7 +42,7 @@ class Images:
     def of(cls, plan: FloorPlan, lattice: Lattice) -> "Images":
         """The images of a plan; the answer is found by row intervals."""
         free = free_space(Intervals.of(plan, ROBOT, lattice), ROBOT, lattice).free_nodes()
-        return cls(occupied_cells(plan, lattice), free, largest_set(free))
+        return cls(occupied_cells(plan, lattice), free.as_array(), largest_set(free).as_array())
 
     def tried(self) -> BoolArray:
         """Nodes that a search from the start tries: the reached ones and all beside them."""
@@ -92,8 +93,8 @@ class Figures:
 Contender: TypeAlias = Callable[[Question], Figures]
 
 
-def largest_set(free: BoolArray) -> BoolArray:
+def largest_set(free: Nodes) -> Nodes:
     """The largest disc-connected set of nodes."""
     sets = DiscComponents.of(free)
-    label = np.bincount(sets.labels[sets.labels >= 0]).argmax()
+    label = np.bincount(sets.labels, sets.rows.end - sets.rows.begin + 1).argmax()
     return sets.nodes(int(label))

@@ -16,6 +16,7 @@ from shapely.geometry import Polygon
 from satAOI_geo.discs import Arcs, boundary, covered_cells
 from satAOI_geo.errors import InputError
 from satAOI_geo.lattice import Lattice
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import BoolArray, FloatArray, IntArray
 
 CLEAN_MM = 0.05
@@ -148,15 +149,19 @@ class Aoi:
     """The area of interest.
 
     Attributes:
-        raster: Shape (n_rows, n_columns), True where the cell's centre lies within R, included,
-            of a reached node.
+        cells: The cells whose centre lies within R, included, of a reached node.
         outlines: Its connected parts in the plan's frame, largest first.
         raster_area_mm2: Area of the cells of the raster.
     """
 
-    raster: BoolArray
+    cells: Nodes
     outlines: tuple[Outline, ...]
     raster_area_mm2: float
+
+    @property
+    def raster(self) -> BoolArray:
+        """Whether each cell is one of them, shape (n_rows, n_columns)."""
+        return self.cells.as_array()
 
     @property
     def area_mm2(self) -> float:
@@ -164,13 +169,11 @@ class Aoi:
         return sum(outline.area_mm2() for outline in self.outlines)
 
 
-def area(
-    reached: BoolArray, lattice: Lattice, disc_radius_mm: float, *, exact: bool = False
-) -> Aoi:
+def area(reached: Nodes, lattice: Lattice, disc_radius_mm: float, *, exact: bool = False) -> Aoi:
     """The area that discs of radius R cover from the reached nodes.
 
     Args:
-        reached: Shape (n_rows, n_columns).
+        reached: The reached nodes.
         lattice: Where the nodes lie.
         disc_radius_mm: R.
         exact: Whether the outlines keep arcs that rise less than `CLEAN_MM` over their chord.
@@ -184,16 +187,15 @@ def area(
             "give nodes of this lattice"
         )
     radius = disc_radius_mm / lattice.step_mm
-    raster = covered_cells(reached, radius)
-    raster.flags.writeable = False
+    cells = covered_cells(reached, radius)
     arcs = boundary(reached, radius)
     begins_mm = np.array(lattice.origin_mm) + (arcs.begins + 0.5) * lattice.step_mm
     vertices = np.column_stack((begins_mm, _bulges(arcs.spans_rad)))
     loops = arcs.loops
     if not exact:
         vertices, loops = _cleaned(vertices, arcs, disc_radius_mm)
-    raster_area_mm2 = float(np.count_nonzero(raster)) * lattice.step_mm**2
-    return Aoi(raster, _outlines(_split(vertices, loops)), raster_area_mm2)
+    raster_area_mm2 = cells.count() * lattice.step_mm**2
+    return Aoi(cells, _outlines(_split(vertices, loops)), raster_area_mm2)
 
 
 def _bulges(spans_rad: FloatArray) -> FloatArray:

@@ -15,6 +15,7 @@ from shapely.geometry.base import BaseGeometry
 
 from satAOI_geo.engine import AtRest
 from satAOI_geo.lattice import Lattice, Words
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import CONTACT_MM, Circle, FloorPlan, Obstacle, Shape, polygons_in
 from satAOI_geo.robot import Part, Pose, Robot, unit
 from satAOI_geo.sweep import stepped
@@ -107,8 +108,9 @@ class Reference:
         barred = []
         for rows_up, columns_right in ((0, 1), (1, 0)):
             step_mm = np.array((columns_right, rows_up)) * self._lattice.step_mm
-            swept = self._lattice.unpacked(self.blocked(stepped(part, step_mm)) & ~blocked)
-            barred += [(rows_up, iy, ix) for iy, ix in np.argwhere(swept).tolist()]
+            swept = self.blocked(stepped(part, step_mm)) & ~blocked
+            nodes = Nodes(swept, self._lattice.n_columns).as_array()
+            barred += [(rows_up, iy, ix) for iy, ix in np.argwhere(nodes).tolist()]
         return AtRest(blocked, np.array(barred, dtype=np.int64).reshape(-1, 3))
 
     def band(self, rows: slice) -> "Reference":
@@ -125,7 +127,7 @@ class Reference:
             ]
             for iy in range(lattice.n_rows)
         ]
-        return lattice.packed(np.array(touches))
+        return Nodes.of(np.array(touches)).words | lattice.no_nodes()
 
 
 def _part_core(part: Part) -> BaseGeometry:

@@ -17,7 +17,11 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 
+from satAOI_geo.intervals import set_bits
+from satAOI_geo.lattice import Words
+from satAOI_geo.nodes import Nodes, from_above, from_below, from_left, from_right
 from satAOI_geo.plan import BoolArray, FloatArray, IntArray
+from satAOI_geo.runs import Int32Array, rows_of
 
 TIE = 1e-12
 """Share of a squared radius within which a squared distance counts as equal to it: far more than
@@ -41,22 +45,18 @@ to π with (0, 0) for both. The kernels pass plain arrays: a cache of compiled c
 class cannot be read once the class is gone."""
 
 
-def covered_cells(reached: BoolArray, radius: float) -> BoolArray:
-    """The nodes within a radius of a reached node, at exactly the radius included.
+def covered_cells(reached: Nodes, radius: float) -> Nodes:
+    """The nodes within a radius, in steps, of a reached node, at exactly the radius included.
 
-    Args:
-        reached: Shape (n_rows, n_columns).
-        radius: In steps.
-
-    Returns:
-        Shape (n_rows, n_columns); what would lie beyond the lattice is cut off.
+    What would lie beyond the lattice is cut off.
     """
     square = radius * radius * (1 + TIE)
     rows = np.arange(math.floor(math.sqrt(square)) + 1)
     half_widths = np.floor(np.sqrt(square - rows * rows)).astype(np.int64)
-    covered = np.zeros(reached.shape, dtype=np.bool_)
-    _cover(reached, half_widths, covered)
-    return covered
+    covered = np.zeros_like(reached.words)
+    runs = rows_of(reached)
+    _cover(runs.first, runs.begin, runs.end, half_widths, covered, reached.n_columns)
+    return Nodes(covered, reached.n_columns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ class Arcs:
     loops: IntArray
 
 
-def boundary(reached: BoolArray, radius: float) -> Arcs:
+def boundary(reached: Nodes, radius: float) -> Arcs:
     """The boundary of the union of the discs on the reached nodes.
 
     A covered point x of the circle about a reached node p (closer than ρ to some reached node) is
@@ -96,24 +96,22 @@ def boundary(reached: BoolArray, radius: float) -> Arcs:
     nodes, first = _sorted(_exposed(reached) if is_fine else reached, side)
     # each disc looked at parts one gap in two at most: 8 neighbours, then the exposed nodes
     gaps = np.empty((1 + 8 + len(nodes), 6))
-    table = _uncovered(reached, nodes, first, side, gaps, radius).reshape(-1, 7)
+    table = _uncovered(reached.words, nodes, first, side, gaps, radius).reshape(-1, 7)
     return _linked(table[:, :2].astype(np.int64), table[:, 2:4], table[:, 4:6], table[:, 6])
 
 
-def _exposed(reached: BoolArray) -> BoolArray:
+def _exposed(reached: Nodes) -> Nodes:
     """The reached nodes with a 4-neighbour that is not reached."""
-    exposed = reached.copy()
-    beside = reached[2:, 1:-1] & reached[:-2, 1:-1] & reached[1:-1, 2:] & reached[1:-1, :-2]
-    # what lies beyond the lattice is not reached, so all reached nodes along its rim are exposed
-    exposed[1:-1, 1:-1] &= ~beside
-    return exposed
+    words = reached.words
+    inner = from_right(words) & from_left(words) & from_above(words) & from_below(words)
+    return Nodes(words & ~inner, reached.n_columns)
 
 
-def _sorted(chosen: BoolArray, side: int) -> tuple[IntArray, IntArray]:
-    """The nodes of a raster, sorted into squares so that those near a place are found quickly.
+def _sorted(chosen: Nodes, side: int) -> tuple[IntArray, IntArray]:
+    """The nodes of a set, sorted into squares so that those near a place are found quickly.
 
     Args:
-        chosen: Shape (n_rows, n_columns).
+        chosen: The nodes.
         side: Of a square, in steps.
 
     Returns:
@@ -121,7 +119,10 @@ def _sorted(chosen: BoolArray, side: int) -> tuple[IntArray, IntArray]:
         (rows, columns + 1): square [row, column] holds first[row, column]:first[row, column + 1].
     """
     rows, columns = (size // side + 1 for size in chosen.shape)
-    y, x = np.nonzero(chosen)
+    runs = rows_of(chosen)
+    width = runs.end.astype(np.int64) - runs.begin + 1
+    y = np.repeat(np.repeat(np.arange(chosen.shape[0]), np.diff(runs.first)), width)
+    x = np.arange(y.size) + np.repeat(runs.begin - np.cumsum(width) + width, width)
     square = y // side * columns + x // side
     order = np.argsort(square, kind="stable")
     ends = np.append(0, np.cumsum(np.bincount(square, minlength=rows * columns)))
@@ -181,49 +182,30 @@ def _chained(values: FloatArray, order: IntArray, apart: BoolArray) -> IntArray:
 
 
 @numba.njit(nogil=True, cache=True)
-def _cover(reached: BoolArray, half_widths: IntArray, covered: BoolArray) -> None:
+def _cover(
+    first: IntArray,
+    begin: Int32Array,
+    end: Int32Array,
+    half_widths: IntArray,
+    covered: Words,
+    n_columns: int,
+) -> None:
     """Set the cells that lie within half_widths[d] columns of a reached node d rows away.
 
-    Runs of reached nodes, widened, count +1 where they begin and -1 past their end; what the
-    running sum has above 0 is covered.
+    The reached nodes are given as runs, see `runs.SliceRuns`.
     """
-    n_rows, n_columns = reached.shape
-    first, begin, end = _runs(reached)
-    steps = np.empty(n_columns + 1, dtype=np.int64)
+    n_rows = covered.shape[0]
     for iy in range(n_rows):
-        steps[:] = 0
         for row in range(max(0, iy - half_widths.size + 1), min(n_rows, iy + half_widths.size)):
             width = half_widths[abs(row - iy)]
             for run in range(first[row], first[row + 1]):
-                steps[max(0, begin[run] - width)] += 1
-                steps[min(n_columns, end[run] + width)] -= 1
-        n_over = 0
-        for ix in range(n_columns):
-            n_over += steps[ix]
-            covered[iy, ix] = n_over > 0
-
-
-@numba.njit(nogil=True, cache=True)
-def _runs(reached: BoolArray) -> tuple[IntArray, IntArray, IntArray]:
-    """Runs of reached nodes: those of row iy are first[iy]:first[iy + 1], each begin:end."""
-    n_rows, n_columns = reached.shape
-    first = np.zeros(n_rows + 1, dtype=np.int64)
-    begin, end = [0 for _ in range(0)], [0 for _ in range(0)]
-    for iy in range(n_rows):
-        inside = False
-        for ix in range(n_columns):
-            if reached[iy, ix] != inside:
-                (end if inside else begin).append(ix)
-                inside = not inside
-        if inside:
-            end.append(n_columns)
-        first[iy + 1] = len(begin)
-    return first, np.array(begin), np.array(end)
+                left, right = max(0, begin[run] - width), min(n_columns - 1, end[run] + width)
+                set_bits(covered[iy], left, right)
 
 
 @numba.njit(nogil=True, cache=True)
 def _uncovered(
-    reached: BoolArray,
+    reached: Words,
     nodes: IntArray,
     first: IntArray,
     side: int,
@@ -235,7 +217,7 @@ def _uncovered(
     They are x and y of the node, of the arc's begin and of its end, and the arc's angle.
 
     Args:
-        reached: Shape (n_rows, n_columns).
+        reached: The reached nodes, shape (n_rows, n_words).
         nodes: The exposed nodes, see `_sorted`.
         first: Where those of each square begin.
         side: Of a square.
@@ -253,7 +235,7 @@ def _uncovered(
 
 
 @numba.njit(nogil=True, cache=True)
-def _cut_by_neighbours(gaps: FloatArray, reached: BoolArray, x: int, y: int, radius: float) -> int:
+def _cut_by_neighbours(gaps: FloatArray, reached: Words, x: int, y: int, radius: float) -> int:
     """Write what the 8 neighbours leave of the circle about (x, y), and return how many gaps.
 
     The 4 would do; with the diagonal ones less is left to look for.
@@ -262,8 +244,9 @@ def _cut_by_neighbours(gaps: FloatArray, reached: BoolArray, x: int, y: int, rad
     _set_end(gaps[0], END, math.pi, 0, 0)
     n = 1
     for iy in range(max(0, y - 1), min(reached.shape[0], y + 2)):
-        for ix in range(max(0, x - 1), min(reached.shape[1], x + 2)):
-            if reached[iy, ix]:
+        # bits beyond the last column are clear
+        for ix in range(max(0, x - 1), min(64 * reached.shape[1], x + 2)):
+            if reached[iy, ix >> 6] >> np.uint64(ix & 63) & np.uint64(1):
                 n = _cut(gaps, n, ix - x, iy - y, radius)
     return n
 

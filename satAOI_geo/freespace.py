@@ -11,7 +11,8 @@ import numpy as np
 
 from satAOI_geo.engine import Engine
 from satAOI_geo.lattice import WORD_BITS, Lattice, Words
-from satAOI_geo.plan import BoolArray, IntArray
+from satAOI_geo.nodes import Nodes, from_above, from_right
+from satAOI_geo.plan import IntArray
 from satAOI_geo.robot import Part, Robot
 from satAOI_geo.sweep import carried, turned
 
@@ -38,14 +39,14 @@ class FreeSpace:
         word = int(self.words[a1, swing, iy, ix // WORD_BITS])
         return bool(word >> int(ix) % WORD_BITS & 1)
 
-    def free_nodes(self) -> BoolArray:
-        """Nodes at which some pose is free, shape (n_rows, n_columns)."""
-        return self.lattice.unpacked(np.bitwise_or.reduce(self.words, axis=(0, 1)))
+    def free_nodes(self) -> Nodes:
+        """Nodes at which some pose is free."""
+        return Nodes(np.bitwise_or.reduce(self.words, axis=(0, 1)), self.lattice.n_columns)
 
     def steps(self, a1: int, swing: int, *, rows_up: int) -> Words:
         """Nodes from which the disc may step up (rows_up 1) or right (0), the pose kept."""
         free = self.words[a1, swing]
-        steps: Words = free & (_from_above(free) if rows_up else _from_right(free))
+        steps: Words = free & (from_above(free) if rows_up else from_right(free))
         barred = self.barred[a1][swing]
         iy, ix = barred[barred[:, 0] == rows_up, 1:].T
         bits = np.uint64(1) << (ix % WORD_BITS).astype(np.uint64)
@@ -172,17 +173,3 @@ def _neighbour(swing: int, n_swings: int, *, ring: bool) -> int | None:
     if ring:
         return swing % n_swings
     return swing if 0 <= swing < n_swings else None
-
-
-def _from_right(words: Words) -> Words:
-    """Each node's bit becomes that of its right neighbour."""
-    shifted = words >> np.uint64(1)
-    shifted[:, :-1] |= words[:, 1:] << np.uint64(WORD_BITS - 1)
-    return shifted
-
-
-def _from_above(words: Words) -> Words:
-    """Each node's bit becomes that of its upper neighbour."""
-    shifted = np.zeros_like(words)
-    shifted[:-1] = words[1:]
-    return shifted

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from satAOI_geo.errors import InputError, LimitError
-from satAOI_geo.plan import BoolArray, FloatArray
+from satAOI_geo.plan import FloatArray
 from satAOI_geo.robot import Pose, Robot
 
 MAX_NODES: Final = 100_000_000
@@ -167,18 +167,3 @@ class Lattice:
         if used:
             words[:, -1] = np.uint64(((1 << WORD_BITS) - 1) ^ ((1 << used) - 1))
         return words
-
-    def packed(self, nodes: BoolArray) -> Words:
-        """Booleans, shape (n_rows, n_columns), as bits; those beyond the last column are set."""
-        words = self.no_nodes()
-        octets = np.packbits(nodes, axis=-1, bitorder="little")
-        padded = np.zeros((self.n_rows, words.shape[1] * WORD_BITS // 8), dtype=np.uint8)
-        padded[:, : octets.shape[1]] = octets
-        words |= padded.view("<u8")
-        return words
-
-    def unpacked(self, words: Words) -> BoolArray:
-        """Bits, shape (n_rows, n_words), as booleans, shape (n_rows, n_columns)."""
-        octets = np.ascontiguousarray(words, dtype="<u8").view(np.uint8)
-        bits = np.unpackbits(octets, axis=-1, count=self.n_columns, bitorder="little")
-        return bits.view(np.bool_)

@@ -104,7 +104,7 @@ def area_of_interest(
         patches = unreached(found.plan, lattice, areas[settings.connectivity], wider)
     report = report_of(
         found,
-        n_nodes={rule: int(reached.sum()) for rule, reached in nodes.items()},
+        n_nodes={rule: reached.count() for rule, reached in nodes.items()},
         areas=areas,
         zones=all_zones,
         set_downs=downs,

@@ -17,14 +17,13 @@ from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-import scipy.ndimage
 
 from satAOI_geo.engine import Engine
 from satAOI_geo.freespace import FreeSpace, Move, moves, run_threads
 from satAOI_geo.lattice import Lattice
-from satAOI_geo.plan import BoolArray
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.robot import Robot
-from satAOI_geo.runs import Int32Array, Meeting, Runs, SliceRuns, roots, unite
+from satAOI_geo.runs import Int32Array, Meeting, Runs, SliceRuns, roots, rows_of, unite
 from satAOI_geo.stretches import Stretches, merged
 
 EVERYTHING: Final = slice(None)
@@ -41,33 +40,52 @@ class State(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class DiscComponents:
-    """The disc-connected sets.
+    """The disc-connected sets, numbered in the order of their first node by row and column.
 
     Attributes:
-        labels: Shape (n_rows, n_columns): number of each node's set, or -1 where no pose is free.
+        shape: (rows, columns) of the lattice.
+        rows: All free nodes, as stretches of rows.
+        labels: Shape (n_stretches,): number of each stretch's set.
+        stretches: The same, set by set.
         boxes: Shape (n, 4), least row, least column, greatest row, greatest column of each set.
     """
 
+    shape: tuple[int, int]
+    rows: SliceRuns
     labels: npt.NDArray[np.int32]
+    stretches: Stretches
     boxes: npt.NDArray[np.int64]
 
     @classmethod
-    def of(cls, free: BoolArray) -> "DiscComponents":
+    def of(cls, free: Nodes) -> "DiscComponents":
         """Sets of free nodes joined by their 8 neighbours: what Algorithm 2 searches."""
-        labels, _ = scipy.ndimage.label(free, structure=np.ones((3, 3)))
-        windows = scipy.ndimage.find_objects(labels)
-        boxes = [(rows.start, cols.start, rows.stop - 1, cols.stop - 1) for rows, cols in windows]
-        return cls(labels.astype(np.int32) - 1, np.array(boxes, dtype=np.int64).reshape(-1, 4))
+        rows = rows_of(free)
+        row = np.repeat(np.arange(free.shape[0]), np.diff(rows.first))
+        # one number that puts row and column in order; rows are more than a step apart in it
+        width = free.n_columns + 2
+        begins, ends = row * width + rows.begin, row * width + rows.end
+        # those of the row above that reach from a column left of a stretch to one right of it
+        first = np.searchsorted(ends, begins + width - 1)
+        n_above = np.searchsorted(begins, ends + width + 1, side="right") - first
+        below = np.repeat(np.arange(row.size), n_above)
+        above = np.arange(below.size) + np.repeat(first - np.cumsum(n_above) + n_above, n_above)
+        parents = np.arange(row.size, dtype=np.int32)
+        unite(parents, np.column_stack((below, above)).astype(np.int32))
+        labels, n_sets = _numbered(parents)
+        stretches = Stretches.of(labels, row.astype(np.int32), rows.begin, rows.end, n_sets)
+        return cls(free.shape, rows, labels, stretches, stretches.boxes())
 
-    def at_node(self, iy: int, ix: int) -> list[int]:
-        """The sets that hold a node: one, or none where no pose is free."""
-        label = int(self.labels[iy, ix])
-        return [] if label < 0 else [label]
+    def label_at(self, iy: int, ix: int) -> int:
+        """The set that holds a node, or -1 where no pose is free."""
+        first = int(self.rows.first[iy])
+        ends = self.rows.end[first : self.rows.first[iy + 1]]
+        stretch = first + int(np.searchsorted(ends, ix))
+        is_held = stretch < first + ends.size and self.rows.begin[stretch] <= ix
+        return int(self.labels[stretch]) if is_held else -1
 
-    def nodes(self, label: int, rows: slice = EVERYTHING, columns: slice = EVERYTHING) -> BoolArray:
-        """The nodes of one set, shape (n_rows, n_columns) or that of a window."""
-        nodes: BoolArray = self.labels[rows, columns] == label
-        return nodes
+    def nodes(self, label: int, rows: slice = EVERYTHING, columns: slice = EVERYTHING) -> Nodes:
+        """The nodes of one set, of all of the lattice or of a window that holds the set."""
+        return self.stretches.nodes(label, *_ranges(self.shape, rows, columns))
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,12 +218,9 @@ class PoseComponents:
         best = np.lexsort((a1, swing, bend))[0]
         return State(iy, ix, int(a1[best]), int(swing[best]))
 
-    def nodes(self, label: int, rows: slice = EVERYTHING, columns: slice = EVERYTHING) -> BoolArray:
-        """The nodes at which the set has some pose, shape (n_rows, n_columns) or that of a window.
-
-        A window must hold the whole set.
-        """
-        return self.stretches.nodes(label, self.lattice, rows, columns)
+    def nodes(self, label: int, rows: slice = EVERYTHING, columns: slice = EVERYTHING) -> Nodes:
+        """Where the set has some pose, in all of the lattice or in a window that holds the set."""
+        return self.stretches.nodes(label, *_ranges(self.lattice.shape, rows, columns))
 
     def first_nodes(self) -> npt.NDArray[np.int32]:
         """Row and column of the first node of each set, shape (n, 2)."""
@@ -231,6 +246,11 @@ def _stretches(
     own = rows < band.lattice.n_rows - (not has_last_row)
     labels, rows = numbers[band.labels[own]], rows[own] + np.int32(band.lattice.first_row)
     return merged(labels, rows, band.runs.begin[own], band.runs.end[own])
+
+
+def _ranges(shape: tuple[int, int], rows: slice, columns: slice) -> tuple[range, range]:
+    """Rows and columns of a window of a lattice."""
+    return range(*rows.indices(shape[0])), range(*columns.indices(shape[1]))
 
 
 def _numbered(parents: npt.NDArray[np.int32]) -> tuple[npt.NDArray[np.int32], int]:

@@ -23,7 +23,8 @@ from shapely.geometry import MultiPolygon, Point, Polygon
 from satAOI_geo.aoi import Aoi
 from satAOI_geo.engine import Engine
 from satAOI_geo.lattice import Lattice
-from satAOI_geo.plan import BoolArray, FloorPlan, Obstacle, Region, as_region, polygons_in
+from satAOI_geo.nodes import Nodes
+from satAOI_geo.plan import FloorPlan, Obstacle, Region, as_region, polygons_in
 from satAOI_geo.robot import Robot
 
 SAGITTA_MM: Final = 0.01
@@ -83,17 +84,17 @@ class Patch:
 
 
 def fitting_nodes(
-    engine: Engine, robot: Robot, lattice: Lattice, free: BoolArray
-) -> dict[Reason, BoolArray]:
+    engine: Engine, robot: Robot, lattice: Lattice, free: Nodes
+) -> dict[Reason, Nodes]:
     """Nodes at which the disc, the disc and the arm, or any pose touches nothing.
 
-    What the disc covers from them holds what is left over for the reason each stands at. All have
-    the shape (n_rows, n_columns), as have `free`, the nodes at which some pose is free.
+    What the disc covers from them holds what is left over for the reason each stands at; `free`
+    are the nodes at which some pose is free.
     """
     capsules = (~engine.blocked(robot.capsule(arm)) for arm in lattice.directions())
     return {
-        Reason.ARM: lattice.unpacked(~engine.blocked(robot.disc())),
-        Reason.VEHICLE: lattice.unpacked(reduce(np.bitwise_or, capsules)),
+        Reason.ARM: Nodes(~engine.blocked(robot.disc()), lattice.n_columns),
+        Reason.VEHICLE: Nodes(reduce(np.bitwise_or, capsules), lattice.n_columns),
         Reason.ZONE: free,
     }
 

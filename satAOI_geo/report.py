@@ -277,7 +277,7 @@ def report_of(
             source=found.start.source,
             n_components=found.start.n_components,
         ),
-        free=FreeFigures(n_nodes=int(found.free.sum()), n_states=found.n_states),
+        free=FreeFigures(n_nodes=found.free.count(), n_states=found.n_states),
         disc_connected=connected["disc"],
         pose_connected=connected["pose"],
         aoi=AoiFigures(

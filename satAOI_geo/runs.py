@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from satAOI_geo.intervals import set_bits
 from satAOI_geo.lattice import Words
+from satAOI_geo.nodes import Nodes, from_right
 from satAOI_geo.plan import IntArray
 
 Int32Array: TypeAlias = npt.NDArray[np.int32]
@@ -74,7 +75,7 @@ class SliceRuns:
 
     @classmethod
     def of(cls, free: Words, right: Words) -> "SliceRuns":
-        """The runs of one pose from its free nodes and the steps to the right among them."""
+        """The runs from free nodes and the steps to the right among them."""
         first = np.zeros(free.shape[0] + 1, dtype=np.int64)
         _count_runs(free, right, first)
         np.cumsum(first, out=first)
@@ -126,6 +127,11 @@ class Meeting:
         `ends` are the nodes at which both ends of the move are free.
         """
         return bool(_are_apart(parents, ends, self.first_a, self.first_b, self.end))
+
+
+def rows_of(nodes: Nodes) -> SliceRuns:
+    """The stretches of a set's nodes, row by row."""
+    return SliceRuns.of(nodes.words, nodes.words & from_right(nodes.words))
 
 
 def unite(parents: Int32Array, pairs: Int32Array) -> None:

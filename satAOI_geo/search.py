@@ -14,7 +14,8 @@ from satAOI_geo.errors import InputError, NothingFreeError
 from satAOI_geo.freespace import free_space
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import WORD_BITS, Lattice
-from satAOI_geo.plan import BoolArray, FloorPlan
+from satAOI_geo.nodes import Nodes
+from satAOI_geo.plan import FloorPlan
 from satAOI_geo.progress import Stopwatch
 from satAOI_geo.reach import Band, DiscComponents, PoseComponents
 from satAOI_geo.robot import Robot
@@ -76,7 +77,7 @@ class Search:
         settings: What the search was made with.
         lattice: Nodes and directions.
         engine: Tells where a part touches something.
-        free: Nodes at which some pose is free, shape (n_rows, n_columns).
+        free: Nodes at which some pose is free.
         n_states: How many (node, pose) pairs are free.
         disc: The disc-connected sets.
         pose: The pose-connected sets.
@@ -88,7 +89,7 @@ class Search:
     settings: Settings
     lattice: Lattice
     engine: Engine
-    free: BoolArray
+    free: Nodes
     n_states: int
     disc: DiscComponents
     pose: PoseComponents
@@ -129,7 +130,7 @@ def search(
     )
     engine = _engine(plan, robot, lattice, settings)
     free, n_states, bands = _explored(engine, robot, lattice, settings.memory_gb, watch)
-    if not free.any():
+    if not free.words.any():
         raise NothingFreeError(
             f"robot '{robot.name}' fits nowhere on this floor of {plan.floor.area / MM2_PER_M2:.2f}"
             " m²; check the drawing's unit, the layers taken for obstacles, and the clearance"
@@ -150,22 +151,22 @@ def search(
 
 def _explored(
     engine: Engine, robot: Robot, lattice: Lattice, memory_gb: float, watch: Stopwatch
-) -> tuple[BoolArray, int, list[Band]]:
+) -> tuple[Nodes, int, list[Band]]:
     """Nodes at which some pose is free, how many states are, and the states band by band."""
-    free = np.empty(lattice.shape, dtype=np.bool_)
+    free = np.empty(lattice.no_nodes().shape, dtype=np.uint64)
     n_states, bands = 0, []
     for rows in _bands(lattice, memory_gb):
         here, band = engine.band(rows), lattice.band(rows)
         share = rows.start / lattice.n_rows, rows.stop / lattice.n_rows
         with watch.stage("free space", *share):
             space = free_space(here, robot, band, watch.share)
-            free[rows] = space.free_nodes()
+            free[rows] = space.free_nodes().words
             # the last row is the next band's, too
             own = band.n_rows - (rows.stop < lattice.n_rows)
             n_states += space.n_states(slice(own))
         with watch.stage("reach", *share):
             bands.append(Band.of(here, robot, space, watch.share))
-    return free, n_states, bands
+    return Nodes(free, lattice.n_columns), n_states, bands
 
 
 def _bands(lattice: Lattice, memory_gb: float) -> Iterator[slice]:

@@ -10,7 +10,8 @@ import numpy as np
 from satAOI_geo.collision import Collider
 from satAOI_geo.errors import InputError, StartBlockedError
 from satAOI_geo.lattice import Lattice
-from satAOI_geo.plan import BoolArray, FloorPlan, Frame, Obstacle
+from satAOI_geo.nodes import Nodes
+from satAOI_geo.plan import FloorPlan, Frame, Obstacle
 from satAOI_geo.reach import DiscComponents, PoseComponents, State
 from satAOI_geo.robot import Robot
 from satAOI_geo.zones import largest, set_down
@@ -94,7 +95,7 @@ class StartFinder:
         plan: The floor and its obstacles, in the lattice's axes.
         robot: The robot.
         collider: The exact collision test, to name what is in the way.
-        free: Nodes at which some pose is free, shape (n_rows, n_columns).
+        free: Nodes at which some pose is free.
         disc: The disc-connected sets.
         pose: The pose-connected sets.
     """
@@ -102,7 +103,7 @@ class StartFinder:
     plan: FloorPlan
     robot: Robot
     collider: Collider
-    free: BoolArray
+    free: Nodes
     disc: DiscComponents
     pose: PoseComponents
 
@@ -115,7 +116,7 @@ class StartFinder:
         """
         lattice = self.pose.lattice
         node = lattice.nearest_node(*mark.at_mm)
-        if node is None or not self.free[node]:
+        if node is None or not self.free.has(*node):
             raise self._blocked(mark, node, None)
         labels = self.pose.at_node(*node)
         if mark.angles_rad is None:
@@ -127,13 +128,13 @@ class StartFinder:
             if found is None:
                 raise self._blocked(mark, node, state)
             label = found
-        return Start(state, mark.source, int(self.disc.labels[node]), label, len(labels))
+        return Start(state, mark.source, self.disc.label_at(*node), label, len(labels))
 
     def largest(self, connectivity: Literal["disc", "pose"]) -> Start:
         """The start that trowels the largest area, by the connectivity that is asked for."""
         lattice, disc_mm = self.pose.lattice, self.robot.disc_radius_mm
         one_node_each = self.pose.first_nodes()
-        disc_of_pose = self.disc.labels[one_node_each[:, 0], one_node_each[:, 1]]
+        disc_of_pose = np.array([self.disc.label_at(*node) for node in one_node_each.tolist()])
         labels = np.arange(disc_of_pose.size)
         if connectivity == "disc":
             best = largest(self.disc, range(len(self.disc.boxes)), lattice, disc_mm)
@@ -196,10 +197,10 @@ def _nearest_state(
 
 
 def _nearest_free_mm(
-    free: BoolArray, lattice: Lattice, at_mm: tuple[float, float]
+    free: Nodes, lattice: Lattice, at_mm: tuple[float, float]
 ) -> tuple[float, float]:
     """The free node nearest to a point, the lowest row and column among equals."""
-    rows, columns = np.nonzero(free)
+    rows, columns = np.nonzero(free.as_array())
     x_mm = lattice.origin_mm[0] + (columns + 0.5) * lattice.step_mm
     y_mm = lattice.origin_mm[1] + (rows + 0.5) * lattice.step_mm
     nearest = int(np.hypot(x_mm - at_mm[0], y_mm - at_mm[1]).argmin())

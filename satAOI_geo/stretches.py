@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from satAOI_geo.lattice import Lattice
-from satAOI_geo.plan import BoolArray, IntArray
+from satAOI_geo.lattice import WORD_BITS
+from satAOI_geo.nodes import Nodes
+from satAOI_geo.plan import IntArray
 from satAOI_geo.runs import Int32Array, paint
 
 
@@ -49,15 +50,13 @@ class Stretches:
         right = np.maximum.reduceat(self.end, first)
         return np.column_stack((self.row[first], left, self.row[last], right)).astype(np.int64)
 
-    def nodes(self, label: int, lattice: Lattice, rows: slice, columns: slice) -> BoolArray:
+    def nodes(self, label: int, rows: range, columns: range) -> Nodes:
         """The nodes of one set in a window of the lattice that holds all of it."""
-        top, above, _ = rows.indices(lattice.n_rows)
-        left, beyond, _ = columns.indices(lattice.n_columns)
-        window = lattice.window(slice(top, above), slice(left, beyond))
         own = slice(self.first[label], self.first[label + 1])
-        words = window.no_nodes()
-        paint(words, self.row[own] - top, self.begin[own] - left, self.end[own] - left)
-        return window.unpacked(words)
+        words = np.zeros((len(rows), -(-len(columns) // WORD_BITS)), dtype=np.uint64)
+        left = columns.start
+        paint(words, self.row[own] - rows.start, self.begin[own] - left, self.end[own] - left)
+        return Nodes(words, len(columns))
 
 
 def merged(

@@ -12,7 +12,8 @@ import numpy.typing as npt
 
 from satAOI_geo.aoi import Aoi, area
 from satAOI_geo.discs import covered_cells
-from satAOI_geo.lattice import Lattice
+from satAOI_geo.lattice import WORD_BITS, Lattice
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.reach import PoseComponents, State
 
@@ -27,7 +28,7 @@ class Components(Protocol):
     def boxes(self) -> npt.NDArray[np.int64]:
         """Shape (n, 4), least row, least column, greatest row, greatest column of each set."""
 
-    def nodes(self, label: int, rows: slice, columns: slice) -> BoolArray:
+    def nodes(self, label: int, rows: slice, columns: slice) -> Nodes:
         """The nodes of one set in a window that holds all of it."""
 
 
@@ -86,12 +87,12 @@ def zones(components: PoseComponents, lattice: Lattice, disc_mm: float) -> tuple
         aoi = area(nodes, lattice.window(rows, columns), disc_mm)
         if aoi.area_mm2 >= ZONE_MM2:
             state = set_down(components, label)
-            found.append(Zone(label, int(np.count_nonzero(nodes)), aoi, state))
+            found.append(Zone(label, nodes.count(), aoi, state))
     return tuple(sorted(found, key=lambda zone: (-zone.aoi.raster_area_mm2, zone.label)))
 
 
 def set_downs(
-    components: PoseComponents, free: BoolArray, lattice: Lattice, disc_mm: float
+    components: PoseComponents, free: Nodes, lattice: Lattice, disc_mm: float
 ) -> tuple[SetDown, ...]:
     """Set-downs whose areas together cover what any pose can trowel, the greatest gain first.
 
@@ -99,22 +100,23 @@ def set_downs(
     stale gain is an upper bound and need only be looked at again when it comes first.
     """
     chosen = []
-    todo = covered_cells(free, disc_mm / lattice.step_mm)
+    todo = covered_cells(free, disc_mm / lattice.step_mm).words
     bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
     queue = [(-bound, label, False) for label, bound in enumerate(bounds_mm2)]
     heapq.heapify(queue)
     while queue:
         best, label, fresh = heapq.heappop(queue)
         rows, columns = _window(components.boxes[label], lattice, disc_mm)
-        if not todo[rows, columns].any():
+        here = todo[rows, columns.start // WORD_BITS : -(-columns.stop // WORD_BITS)]
+        if not here.any():
             continue
         nodes = components.nodes(label, rows, columns)
-        gained = covered_cells(nodes, disc_mm / lattice.step_mm) & todo[rows, columns]
-        gain_mm2 = float(np.count_nonzero(gained)) * lattice.step_mm**2
+        gained = covered_cells(nodes, disc_mm / lattice.step_mm).words & here
+        gain_mm2 = float(np.bitwise_count(gained).sum()) * lattice.step_mm**2
         if gain_mm2 == 0.0:
             continue
         if fresh and gain_mm2 == -best:
-            todo[rows, columns] &= ~gained
+            here &= ~gained
             chosen.append(SetDown(set_down(components, label), label, gain_mm2))
         else:
             heapq.heappush(queue, (-gain_mm2, label, True))
@@ -124,7 +126,7 @@ def set_downs(
 def set_down(components: PoseComponents, label: int) -> State:
     """The state deepest inside a component's nodes, arm as straight as possible."""
     rows, columns = (slice(int(a), int(b) + 1) for a, b in components.boxes[label].reshape(2, 2).T)
-    iy, ix = _deepest(components.nodes(label, rows, columns))
+    iy, ix = _deepest(components.nodes(label, rows, columns).as_array())
     return components.straightest(iy + rows.start, ix + columns.start, label)
 
 
@@ -157,7 +159,7 @@ def _area_mm2(components: Components, label: int, lattice: Lattice, disc_mm: flo
     """What the disc covers from one component's nodes, by the raster."""
     rows, columns = _window(components.boxes[label], lattice, disc_mm)
     cells = covered_cells(components.nodes(label, rows, columns), disc_mm / lattice.step_mm)
-    return float(cells.sum()) * lattice.step_mm**2
+    return cells.count() * lattice.step_mm**2
 
 
 def _area_bounds_mm2(
@@ -170,10 +172,16 @@ def _area_bounds_mm2(
 
 
 def _window(box: npt.NDArray[np.int64], lattice: Lattice, disc_mm: float) -> tuple[slice, slice]:
-    """Rows and columns that hold a box of nodes and all that the disc covers from them."""
+    """Rows and columns that hold a box of nodes and all that the disc covers from them.
+
+    The columns begin and end with a word, or with the lattice.
+    """
     pad = math.ceil(disc_mm / lattice.step_mm)
-    top, right = box[2] + pad + 1, box[3] + pad + 1
+    left, beyond = max(0, int(box[1]) - pad), int(box[3]) + pad + 1
     return (
-        slice(max(0, int(box[0]) - pad), min(lattice.n_rows, int(top))),
-        slice(max(0, int(box[1]) - pad), min(lattice.n_columns, int(right))),
+        slice(max(0, int(box[0]) - pad), min(lattice.n_rows, int(box[2]) + pad + 1)),
+        slice(
+            left // WORD_BITS * WORD_BITS,
+            min(lattice.n_columns, -(-beyond // WORD_BITS) * WORD_BITS),
+        ),
     )

@@ -72,7 +72,7 @@ def rounded_rectangle(width_mm: float, height_mm: float, radius_mm: float) -> Lo
 
 def with_parts(result: Result, outlines: tuple[Outline, ...]) -> Result:
     """The same result with another area, as far as a writer looks at it."""
-    aoi = Aoi(result.aoi.raster, outlines, result.aoi.raster_area_mm2)
+    aoi = Aoi(result.aoi.cells, outlines, result.aoi.raster_area_mm2)
     return replace(result, aoi=aoi)
 
 

@@ -92,7 +92,7 @@ def test_the_raster_finds_all_that_is_free_with_half_a_cell_to_spare() -> None:
     plan = plans.random_plan(3, n_obstacles=4, side_mm=(4000, 5000))
     lattice = coarse(plan)
     spare = Intervals.of(plan, PROTOTYPE, lattice, clearance_mm=STEP_MM / math.sqrt(2))
-    expected = free_space(spare, PROTOTYPE, lattice).free_nodes()
+    expected = free_space(spare, PROTOTYPE, lattice).free_nodes().as_array()
     assert expected.any()
     rim = rim_of_footprints(PROTOTYPE, lattice)
     for slider in sliders(occupied_cells(plan, lattice), rim, beyond=True):

@@ -10,6 +10,7 @@ from shapely.geometry import LineString, Point, Polygon, box
 
 from satAOI_geo.collision import Collider, Reference
 from satAOI_geo.lattice import Lattice
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import CONTACT_MM, Circle, FloorPlan, Kind, Obstacle, Shape
 from satAOI_geo.robot import ROBOTS, Part, Pose, unit
 from tests.drawn import plan_of, ring
@@ -247,7 +248,7 @@ def test_reference_engine_blocks_the_nodes_that_touch() -> None:
     lattice = Lattice((-1000.0, -1000.0), 500.0, 4, 5, 4, (0,))
     post = Circle(250.0, -250.0, 100.0)
     reference = Reference(Collider(plan_of(WIDE_FLOOR, post), PROTOTYPE), lattice)
-    blocked = lattice.unpacked(reference.blocked(PROTOTYPE.capsule(unit(0))))
+    blocked = Nodes(reference.blocked(PROTOTYPE.capsule(unit(0))), lattice.n_columns).as_array()
     # nodes at x = -750 .. 1250, y = -750 .. 750; the spine spans x .. x + 645, so those in the
     # post's row touch it when x ≤ 250 + 450 and x + 645 ≥ 250 - 450, and no other row is within 450
     expected = np.zeros((4, 5), dtype=bool)

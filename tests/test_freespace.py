@@ -18,6 +18,7 @@ from satAOI_geo.errors import InputError
 from satAOI_geo.freespace import FreeSpace, free_space, run_threads
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import BoolArray, FloorPlan
 from satAOI_geo.robot import ROBOTS, Robot
 from tests import drawn, plans
@@ -129,7 +130,7 @@ def sampled(space: FreeSpace, n_states: int) -> tuple[list[Numbers], int]:
     n_beside = 0
     while len(states) < n_states:
         a1, swing = draw.integers((lattice.n_directions, len(lattice.swings)))
-        free = lattice.unpacked(space.words[a1, swing])
+        free = Nodes(space.words[a1, swing], lattice.n_columns).as_array()
         beside = at_boundary(free)
         for iy, ix in drawn_nodes(free, draw):
             states.append((int(iy), int(ix), int(a1), int(swing)))
@@ -211,7 +212,9 @@ def test_every_state_of_a_coarse_lattice_is_as_the_definitions_say(name: str) ->
     for a1 in range(lattice.n_directions):
         for swing, a2 in enumerate(lattice.swings):
             expected = np.reshape(oracle.free((a1, a2), oracle.nodes), lattice.shape)
-            assert np.array_equal(lattice.unpacked(space.words[a1, swing]), expected)
+            assert np.array_equal(
+                Nodes(space.words[a1, swing], lattice.n_columns).as_array(), expected
+            )
 
 
 def test_slow_engine_finds_the_same_free_space() -> None:
@@ -240,9 +243,11 @@ def test_steps_that_something_small_bars_are_those_of_the_slow_engine(name: str)
     slow = free_space(Reference(setting.collider(plan), lattice), robot, lattice)
     n_barred = 0
     for a1, swing, rows_up in np.ndindex(lattice.n_directions, len(lattice.swings), 2):
-        steps = lattice.unpacked(space.steps(a1, swing, rows_up=rows_up))
-        assert np.array_equal(steps, lattice.unpacked(slow.steps(a1, swing, rows_up=rows_up)))
-        free = lattice.unpacked(space.words[a1, swing])
+        steps = Nodes(space.steps(a1, swing, rows_up=rows_up), lattice.n_columns).as_array()
+        assert np.array_equal(
+            steps, Nodes(slow.steps(a1, swing, rows_up=rows_up), lattice.n_columns).as_array()
+        )
+        free = Nodes(space.words[a1, swing], lattice.n_columns).as_array()
         ahead = np.zeros_like(free)
         if rows_up:
             ahead[:-1] = free[1:]
@@ -265,8 +270,10 @@ def test_arm_without_length_leaves_the_disc_to_be_tested() -> None:
 
 def test_free_nodes_are_those_with_some_free_pose() -> None:
     space = Setting(step_mm=50.0, n_directions=8).space(drawn.HARD["spiral"])
-    every = np.array([[space.lattice.unpacked(words) for words in row] for row in space.words])
-    assert np.array_equal(space.free_nodes(), every.any(axis=(0, 1)))
+    every = np.array(
+        [[Nodes(words, space.lattice.n_columns).as_array() for words in row] for row in space.words]
+    )
+    assert np.array_equal(space.free_nodes().as_array(), every.any(axis=(0, 1)))
     assert space.n_states() == every.sum()
 
 
@@ -281,7 +288,7 @@ def test_free_space_of_an_empty_room_is_what_walls_leave() -> None:
     expected = np.zeros((360, 400), dtype=bool)
     expected[np.ix_(rows, columns)] = True
     straight = lattice.swings.index(0)
-    assert np.array_equal(lattice.unpacked(space.words[0, straight]), expected)
+    assert np.array_equal(Nodes(space.words[0, straight], lattice.n_columns).as_array(), expected)
 
 
 def test_threads_do_every_job_once_and_tell_how_far_they_are() -> None:

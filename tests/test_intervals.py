@@ -11,6 +11,7 @@ from shapely.geometry import LineString, Polygon, box
 
 from satAOI_geo.intervals import Intervals, set_bits
 from satAOI_geo.lattice import Lattice
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import CONTACT_MM, BoolArray, Circle, FloatArray, FloorPlan, Shape
 from satAOI_geo.robot import ROBOTS, Part, unit
 from tests.drawn import plan_of
@@ -28,7 +29,9 @@ def blocked(
     part: Part, *shapes: Shape, lattice: Lattice = WINDOW, clearance_mm: float = 0.0
 ) -> BoolArray:
     plan = plan_of(WIDE_FLOOR, *shapes)
-    return lattice.unpacked(Intervals.of(plan, PROTOTYPE, lattice, clearance_mm).blocked(part))
+    return Nodes(
+        Intervals.of(plan, PROTOTYPE, lattice, clearance_mm).blocked(part), lattice.n_columns
+    ).as_array()
 
 
 def nodes_mm(lattice: Lattice = WINDOW) -> tuple[FloatArray, FloatArray]:
@@ -172,7 +175,9 @@ def test_all_off_the_floor_is_blocked() -> None:
     floor = Polygon([(-900, -700), (900, -700), (900, 700), (0, 100), (-900, 700)])
     lattice = WINDOW
     plan = FloorPlan(floor)
-    found = lattice.unpacked(Intervals.of(plan, PROTOTYPE, lattice).blocked(POINT))
+    found = Nodes(
+        Intervals.of(plan, PROTOTYPE, lattice).blocked(POINT), lattice.n_columns
+    ).as_array()
     across_mm, up_mm = nodes_mm()
     # the notch runs from (0, 100) to (±900, 700), down to 2/3 of |x| above 100
     expected = (
@@ -186,7 +191,7 @@ def test_bits_beyond_the_last_column_are_set_whatever_is_blocked(n_columns: int)
     lattice = replace(WINDOW, n_columns=n_columns)
     for shapes in ((), (box(-5000, -5000, 5000, 5000),), (Circle(-900.0, 0.0, 90.0),)):
         words = Intervals.of(plan_of(WIDE_FLOOR, *shapes), PROTOTYPE, lattice).blocked(POINT)
-        n_blocked = lattice.unpacked(words).sum()
+        n_blocked = Nodes(words, lattice.n_columns).as_array().sum()
         n_beyond = words.shape[1] * 64 - n_columns
         assert np.bitwise_count(words).sum() == n_blocked + n_beyond * lattice.n_rows
 

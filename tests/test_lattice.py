@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from satAOI_geo.errors import InputError, LimitError
-from satAOI_geo.lattice import MAX_NODES, WORD_BITS, Lattice
+from satAOI_geo.lattice import MAX_NODES, Lattice
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.robot import ROBOTS, Robot, unit
 
 PROTOTYPE = ROBOTS["magicbim"]
@@ -155,29 +156,8 @@ def test_floor_of_too_many_nodes_is_refused_with_both_figures() -> None:
     assert Lattice.over((0.0, 0.0, 1e5, 1e5), PROTOTYPE).shape == (10_000, 10_000)
 
 
-@given(st.integers(1, 5), st.integers(1, 200), st.integers(0, 2**32 - 1))
-def test_bits_come_back_as_the_nodes_they_were(n_rows: int, n_columns: int, seed: int) -> None:
-    lattice = lattice_of(n_rows, n_columns)
-    nodes = np.random.default_rng(seed).random((n_rows, n_columns)) < 0.5
-    words = lattice.packed(nodes)
-    assert np.array_equal(lattice.unpacked(words), nodes)
-    # every bit beyond the last column is set, and counts as no node of the complement
-    assert np.bitwise_count(~words).sum() == (~nodes).sum()
-
-
-@pytest.mark.parametrize("n_columns", [1, 63, 64, 65, 127, 128, 129])
-def test_a_node_is_the_bit_it_is_said_to_be(n_columns: int) -> None:
-    lattice = lattice_of(2, n_columns)
-    for ix in range(n_columns):
-        nodes = np.zeros((2, n_columns), dtype=bool)
-        nodes[1, ix] = True
-        words = lattice.packed(nodes)
-        assert int(words[1, ix // WORD_BITS]) >> ix % WORD_BITS & 1
-        assert np.bitwise_count(words ^ lattice.no_nodes()).sum() == 1
-
-
 @pytest.mark.parametrize("n_columns", [1, 63, 64, 65, 128])
 def test_complement_of_no_nodes_is_all_nodes(n_columns: int) -> None:
     lattice = lattice_of(3, n_columns)
-    assert not lattice.unpacked(lattice.no_nodes()).any()
+    assert not Nodes(lattice.no_nodes(), n_columns).as_array().any()
     assert np.bitwise_count(~lattice.no_nodes()).sum() == 3 * n_columns

@@ -14,6 +14,7 @@ from shapely.geometry import Polygon, box
 from satAOI_geo.freespace import free_space
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import BoolArray, Circle, FloorPlan, Obstacle
 from satAOI_geo.reach import Band, DiscComponents, PoseComponents
 from satAOI_geo.robot import ROBOTS, Robot
@@ -68,7 +69,7 @@ class Found:
     @property
     def free(self) -> BoolArray:
         """Whether each state is free, shape (a1, swing, row, column)."""
-        return self.lattice.unpacked(self.words)
+        return Nodes(self.words, self.lattice.n_columns).as_array()
 
     def labels(self) -> Labels:
         """The number of each state's set, shaped as `free`, -1 where it is not."""
@@ -78,6 +79,14 @@ class Found:
         # runs are ordered as the states are, and hold them all
         labels[free] = np.repeat(numbers_of(self.poses), widths)
         return labels
+
+
+def disc_labels(at: Found) -> Labels:
+    """The number of each node's disc-connected set, -1 where no pose is free."""
+    labels = np.full(at.lattice.shape, -1, dtype=np.int32)
+    for label in range(len(at.discs.boxes)):
+        labels[at.discs.nodes(label).as_array()] = label
+    return labels
 
 
 def numbers_of(poses: PoseComponents) -> Labels:
@@ -133,8 +142,8 @@ def assert_same_after(
     """States, disc-connected sets and pose-connected sets are the same after a motion."""
     assert np.array_equal(after.free, mapped(before.free))
     assert np.array_equal(canonical(after.labels()), canonical(mapped(before.labels())))
-    discs = mapped(np.broadcast_to(before.discs.labels, before.free.shape))[0, 0]
-    assert np.array_equal(canonical(after.discs.labels), canonical(discs))
+    discs = mapped(np.broadcast_to(disc_labels(before), before.free.shape))[0, 0]
+    assert np.array_equal(canonical(disc_labels(after)), canonical(discs))
 
 
 found_finely = partial(found, n_directions=FINE)
@@ -178,7 +187,7 @@ def test_plan_shifted_by_whole_cells_shifts_all_that_is_found(
     before, after = found(plan), found(plans.shifted(plan, cells[0] * STEP_MM, cells[1] * STEP_MM))
     assert np.array_equal(before.words, after.words)
     assert np.array_equal(numbers_of(before.poses), numbers_of(after.poses))
-    assert np.array_equal(before.discs.labels, after.discs.labels)
+    assert np.array_equal(disc_labels(before), disc_labels(after))
 
 
 @on_drawn_plans
@@ -206,16 +215,16 @@ def test_threads_find_the_same_numbers_every_time() -> None:
 def test_pose_connected_sets_lie_within_disc_connected_ones(plan: FloorPlan, robot: Robot) -> None:
     at = found(plan, robot)
     for label in range(len(at.poses.boxes)):
-        assert len(np.unique(at.discs.labels[at.poses.nodes(label)])) == 1
-    assert at.discs.labels[~at.free.any(axis=(0, 1))].max(initial=-1) == -1
+        assert len(np.unique(disc_labels(at)[at.poses.nodes(label).as_array()])) == 1
+    assert disc_labels(at)[~at.free.any(axis=(0, 1))].max(initial=-1) == -1
 
 
 def assert_never_more(before: Found, after: Found) -> None:
     """No state, no node and no connection is found that was not there before."""
     assert not (after.free & ~before.free).any()
     assert_split(before.labels()[after.free], after.labels()[after.free])
-    reached = after.discs.labels >= 0
-    assert_split(before.discs.labels[reached], after.discs.labels[reached])
+    reached = disc_labels(after) >= 0
+    assert_split(disc_labels(before)[reached], disc_labels(after)[reached])
 
 
 def assert_split(whole: Labels, parts: Labels) -> None:

@@ -13,6 +13,7 @@ from satAOI_geo.discs import covered_cells
 from satAOI_geo.freespace import FreeSpace, free_space, moves
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import Circle, FloorPlan
 from satAOI_geo.reach import Band, DiscComponents, PoseComponents
 from satAOI_geo.robot import ROBOTS, Robot, unit
@@ -148,19 +149,20 @@ def test_disc_connected_set_is_what_algorithm_2_reaches(seed: int) -> None:
     discs = DiscComponents.of(space.free_nodes())
     covered: set[Node] = set()
     for label in range(len(discs.boxes)):
-        nodes = {(int(iy), int(ix)) for iy, ix in np.argwhere(discs.nodes(label))}
+        nodes = {(int(iy), int(ix)) for iy, ix in np.argwhere(discs.nodes(label).as_array())}
         assert nodes == flooded(min(nodes), lattice.shape, is_free)
-        assert all(discs.at_node(*node) == [label] for node in nodes)
+        assert all(discs.label_at(*node) == label for node in nodes)
         covered |= nodes
     blocked = [node for node in np.ndindex(lattice.shape) if node not in covered]
     assert not any(is_free(node) for node in blocked)
-    assert all(discs.at_node(*node) == [] for node in blocked)
+    assert all(discs.label_at(*node) == -1 for node in blocked)
 
 
 def test_disc_connected_nodes_touch_at_corners_too() -> None:
     free = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 0], [1, 0, 1]], dtype=bool)
-    discs = DiscComponents.of(free)
-    assert discs.labels.tolist() == [[0, -1, -1], [-1, 0, -1], [-1, -1, -1], [1, -1, 2]]
+    discs = DiscComponents.of(Nodes.of(free))
+    labels = [[discs.label_at(iy, ix) for ix in range(3)] for iy in range(4)]
+    assert labels == [[0, -1, -1], [-1, 0, -1], [-1, -1, -1], [1, -1, 2]]
     assert discs.boxes.tolist() == [[0, 0, 1, 1], [3, 0, 3, 0], [3, 2, 3, 2]]
 
 
@@ -193,13 +195,13 @@ def test_opening_lets_through_what_fits(
     start, beyond = lattice.nearest_node(1000.0, 2000.0), lattice.nearest_node(7200.0, 2000.0)
     assert start is not None
     assert beyond is not None
-    assert (discs.at_node(*start) == discs.at_node(*beyond)) is disc_passes
+    assert (discs.label_at(*start) == discs.label_at(*beyond)) is disc_passes
 
-    largest = max(poses.at_node(*start), key=lambda label: poses.nodes(label).sum())
+    largest = max(poses.at_node(*start), key=lambda label: poses.nodes(label).count())
     assert (largest in poses.at_node(*beyond)) is pose_passes
     # one room has 16 m²; through the opening the disc gets as far as the vehicle's nose lets it
     covered = covered_cells(poses.nodes(largest), PROTOTYPE.disc_radius_mm / lattice.step_mm)
-    area_m2 = covered.sum() * lattice.step_mm**2 / MM2_PER_M2
+    area_m2 = covered.count() * lattice.step_mm**2 / MM2_PER_M2
     low_m2, high_m2 = (31.5, 32.0) if pose_passes else (15.5, 17.2)
     assert low_m2 < area_m2 < high_m2
 
@@ -296,7 +298,9 @@ def test_pole_stops_the_moves_that_sweep_over_it(
     straight = lattice.swings.index(0)
     names = {(1, straight): "turn", (0, straight + 1): "swing", (1, straight - 1): "orbit"}
     allowed = {
-        names[move.to_a1, move.to_swing]: bool(lattice.unpacked(move.allowed(engine))[0, 0])
+        names[move.to_a1, move.to_swing]: bool(
+            Nodes(move.allowed(engine), lattice.n_columns).as_array()[0, 0]
+        )
         for move in moves(engine, robot, space, 0)
         if move.swing == straight
     }
@@ -323,11 +327,11 @@ def test_every_set_lies_in_its_box_and_touches_its_sides(seed: int) -> None:
     discs = DiscComponents.of(space.free_nodes())
     for sets in (discs, poses):
         for label, box_of in enumerate(sets.boxes):
-            nodes = sets.nodes(label)
+            nodes = sets.nodes(label).as_array()
             iy, ix = np.nonzero(nodes)
             assert box_of.tolist() == [iy.min(), ix.min(), iy.max(), ix.max()]
             window = slice(iy.min(), iy.max() + 1), slice(ix.min(), ix.max() + 1)
-            assert np.array_equal(sets.nodes(label, *window), nodes[window])
+            assert np.array_equal(sets.nodes(label, *window).as_array(), nodes[window])
 
 
 @pytest.mark.parametrize("seed", [51, 52])
@@ -337,8 +341,8 @@ def test_sets_together_hold_every_free_state_once(seed: int) -> None:
     space, poses = searched(plan, PROTOTYPE, lattice)
     runs = poses.bands[0].runs
     assert (runs.end - runs.begin + 1).sum() == space.n_states()
-    nodes = [poses.nodes(label) for label in range(len(poses.boxes))]
-    assert np.array_equal(np.any(nodes, axis=0), space.free_nodes())
+    nodes = [poses.nodes(label).as_array() for label in range(len(poses.boxes))]
+    assert np.array_equal(np.any(nodes, axis=0), space.free_nodes().as_array())
 
 
 @pytest.mark.parametrize("seed", range(71, 77))

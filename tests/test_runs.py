@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from satAOI_geo.lattice import Lattice, Words
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.runs import Meeting, Runs, SliceRuns, paint, roots, unite
 
@@ -22,8 +23,8 @@ def lattice_of(shape: tuple[int, int]) -> Lattice:
 
 
 def bits(nodes: BoolArray) -> Words:
-    """Nodes as bits; as in a free space, those beyond the last column are clear."""
-    return ~lattice_of(nodes.shape).packed(~nodes)
+    """Nodes as bits."""
+    return Nodes.of(nodes).words
 
 
 @st.composite
@@ -162,7 +163,7 @@ def test_painted_stretches_cover_their_nodes(drawn: tuple[BoolArray, BoolArray],
     for run in chosen:
         iy, begin, end = listed(runs)[run]
         expected[iy, begin : end + 1] = True
-    assert np.array_equal(lattice.unpacked(words), expected)
+    assert np.array_equal(Nodes(words, lattice.n_columns).as_array(), expected)
 
 
 @given(SHAPES.flatmap(slices))

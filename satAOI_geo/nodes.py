@@ -1,0 +1,80 @@
+"""Sets of nodes as bits: a floor of 50 000 m² has half a milliard of them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from satAOI_geo.lattice import WORD_BITS, Words
+from satAOI_geo.plan import BoolArray
+
+ONE = np.uint64(1)
+TOP = np.uint64(WORD_BITS - 1)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Nodes:
+    """A set of nodes of a lattice, or of a window of it.
+
+    Attributes:
+        words: Shape (n_rows, n_words), see `lattice.Words`; bits beyond the last column are clear.
+        n_columns: Columns of the lattice.
+    """
+
+    words: Words
+    n_columns: int
+
+    @classmethod
+    def of(cls, chosen: BoolArray) -> "Nodes":
+        """The set of the nodes that are True, shape (n_rows, n_columns)."""
+        n_rows, n_columns = chosen.shape
+        octets = np.packbits(chosen, axis=-1, bitorder="little")
+        padded = np.zeros((n_rows, -(-n_columns // WORD_BITS) * WORD_BITS // 8), dtype=np.uint8)
+        padded[:, : octets.shape[1]] = octets
+        return cls(padded.view("<u8").astype(np.uint64), n_columns)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(rows, columns)."""
+        return self.words.shape[0], self.n_columns
+
+    def count(self) -> int:
+        """How many nodes there are."""
+        return int(np.bitwise_count(self.words).sum())
+
+    def has(self, iy: int, ix: int) -> bool:
+        """Whether a node of the lattice is in the set."""
+        return bool(int(self.words[iy, ix // WORD_BITS]) >> int(ix) % WORD_BITS & 1)
+
+    def as_array(self) -> BoolArray:
+        """Whether each node is in the set, shape (n_rows, n_columns)."""
+        octets = np.ascontiguousarray(self.words, dtype="<u8").view(np.uint8)
+        bits = np.unpackbits(octets, axis=-1, count=self.n_columns, bitorder="little")
+        return bits.view(np.bool_)
+
+
+def from_right(words: Words) -> Words:
+    """Each node's bit becomes that of its right neighbour."""
+    shifted: Words = words >> ONE
+    shifted[:, :-1] |= words[:, 1:] << TOP
+    return shifted
+
+
+def from_left(words: Words) -> Words:
+    """Each node's bit becomes that of its left neighbour."""
+    shifted: Words = words << ONE
+    shifted[:, 1:] |= words[:, :-1] >> TOP
+    return shifted
+
+
+def from_above(words: Words) -> Words:
+    """Each node's bit becomes that of its upper neighbour."""
+    shifted = np.zeros_like(words)
+    shifted[:-1] = words[1:]
+    return shifted
+
+
+def from_below(words: Words) -> Words:
+    """Each node's bit becomes that of its lower neighbour."""
+    shifted = np.zeros_like(words)
+    shifted[1:] = words[:-1]
+    return shifted
