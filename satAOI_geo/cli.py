@@ -189,7 +189,7 @@ def batch(context: click.Context, *, quiet: bool, **options: Unpack[BatchOptions
     run again.
     """
     from satAOI_adapters import kernel_cache
-    from satAOI_adapters.batch import plans_of, run_all, tasks_of
+    from satAOI_adapters.batch import plans_of, rows_kept, run_all, tasks_of
     from satAOI_adapters.batch_results import earlier_rows
     from satAOI_adapters.cluster import workers
     from satAOI_adapters.robot_read import robot_from
@@ -203,14 +203,14 @@ def batch(context: click.Context, *, quiet: bool, **options: Unpack[BatchOptions
     own = {*Batch.__annotations__, "quiet"}
     named = [Path(options["robot"]), options["layers"], options["xref_dir"]]
     tasks = tasks_of(plans, out_dir, handed_on(context, besides=own), filter(None, named))
-    earlier = {} if options["again"] else earlier_rows(out_dir)
+    kept = {} if options["again"] else rows_kept(tasks, earlier_rows(out_dir))
     with (
         workers(n_workers=options["workers"], scheduler=options["scheduler"]) as crew,
-        counted(len(tasks), quiet=quiet) as told,
+        counted(len(tasks) - len(kept), quiet=quiet) as told,
     ):
-        rows = run_all(tasks, crew, out_dir, earlier=earlier, told=lambda row: told(row.plan))
+        rows = run_all(tasks, crew, out_dir, kept=kept, told=lambda row: told(row.plan))
     if not quiet:
-        tell_batch(rows, out_dir, n_left_out=len(plans) - len(tasks))
+        tell_batch(rows, out_dir, n_kept=len(kept), n_left_out=len(plans) - len(tasks))
     return next((row.exit_code for row in rows if row.exit_code != DONE), DONE)
 
 

@@ -172,12 +172,14 @@ def tell_figures(found: "Inspection", *, json: bool) -> None:
         write_table(table, sys.stdout)
 
 
-def tell_batch(rows: "list[Row]", out_dir: Path, *, n_left_out: int) -> None:
+def tell_batch(rows: "list[Row]", out_dir: Path, *, n_kept: int, n_left_out: int) -> None:
     """Say what came of each plan of a batch."""
     from satAOI_adapters.batch_results import table_of
     from satAOI_adapters.terminal import say_note, write_table
 
     write_table(table_of(rows), sys.stdout)
+    if n_kept:
+        say_note(f"results that were there already: {n_kept}; --again runs these plans, too")
     if n_left_out:
         say_note(f"results of this batch are no plans; left out: {n_left_out}")
     say_note(f"wrote {out_dir / 'results.csv'} and {out_dir / 'results.json'}")

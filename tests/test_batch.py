@@ -6,6 +6,7 @@ import json
 import multiprocessing
 import os
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
@@ -95,8 +96,8 @@ def run_here(*options: str, again: bool = False) -> list[str]:
     """A batch of all texts in this process; the plans that were run."""
     plans, out_dir, here = batch.plans_of(["*.dxf"]), Path("out"), Here()
     tasks = batch.tasks_of(plans, out_dir, options, [Path("layers.toml")])
-    earlier = {} if again else earlier_rows(out_dir)
-    batch.run_all(tasks, here, out_dir, earlier=earlier, told=lambda _: None)
+    kept = {} if again else batch.rows_kept(tasks, earlier_rows(out_dir))
+    batch.run_all(tasks, here, out_dir, kept=kept, told=lambda _: None)
     return here.done
 
 
@@ -143,7 +144,10 @@ def test_a_batch_that_is_resumed_tells_a_person_and_programs_the_same(
     said = capsys.readouterr()
     assert [line.split()[0] for line in said.out.splitlines()] == ["plan", *before]
     assert "not a DXF drawing" in said.out.splitlines()[-1]
-    assert said.err == "note: wrote out/results.csv and out/results.json\n"
+    assert said.err.splitlines() == [
+        "note: results that were there already: 2; --again runs these plans, too",
+        "note: wrote out/results.csv and out/results.json",
+    ]
     with Path("out/results.csv").open(encoding="utf-8", newline="") as stream:
         table = {line["plan"]: line["area_m2"] for line in csv.DictReader(stream)}
     assert table == {plan: str(row["area_m2"] or "") for plan, row in before.items()}
@@ -160,6 +164,7 @@ def test_a_worker_killed_on_the_way_changes_no_result(
             for process in multiprocessing.active_children():
                 process.kill()
                 killed.append(process.pid)
+            time.sleep(0.01)
 
     killer = threading.Thread(target=kill_the_first)
     killer.start()
@@ -238,7 +243,7 @@ def test_results_of_the_batch_are_no_plans() -> None:
         plans = batch.plans_of(["*.dxf"])
         tasks = batch.tasks_of(plans, Path(), [], [])
         assert [one.plan for one in tasks] == ["a.dxf", "b.dxf", "c.dxf"]
-        batch.run_all(tasks, Here(), Path(), earlier={}, told=lambda _: None)
+        batch.run_all(tasks, Here(), Path(), kept={}, told=lambda _: None)
 
 
 def test_options_are_handed_on_as_they_were_written(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -331,7 +336,7 @@ def test_a_worker_that_comes_to_nothing_is_a_row(
 ) -> None:
     told: list[Row] = []
     rows = batch.run_all(
-        [task(tmp_path / "room.dxf")], Lost(error), tmp_path, earlier={}, told=told.append
+        [task(tmp_path / "room.dxf")], Lost(error), tmp_path, kept={}, told=told.append
     )
     assert [(row.exit_code, row.message) for row in rows] == [(exit_code, str(error))]
     assert told == rows == list(earlier_rows(tmp_path).values())

@@ -151,8 +151,22 @@ def tasks_of(
     ]
 
 
-def is_done(task: Task, row: Row) -> bool:
-    """Whether an earlier row tells what a run of the task would give, and its files are there."""
+def rows_kept(tasks: Sequence[Task], earlier: Mapping[str, Row]) -> dict[int, Row]:
+    """The rows of an earlier batch that tell what runs would give, by the task's number.
+
+    Args:
+        tasks: The plans.
+        earlier: Rows by their plan.
+    """
+    return {
+        number: row
+        for number, task in enumerate(tasks)
+        if (row := earlier.get(task.plan)) is not None and _is_done(task, row)
+    }
+
+
+def _is_done(task: Task, row: Row) -> bool:
+    """Whether a row tells what a run of the task would give, and its files are there."""
     same = (row.output, row.report, row.sha256, row.asked, row.version) == (
         task.output,
         task.report,
@@ -168,10 +182,10 @@ def run_all(
     crew: Workers,
     out_dir: Path,
     *,
-    earlier: Mapping[str, Row],
+    kept: Mapping[int, Row],
     told: Callable[[Row], None],
 ) -> list[Row]:
-    """Run the tasks that earlier rows do not answer; the rows of all, in the order of the tasks.
+    """Run the tasks without a row; the rows of all, in the order of the tasks.
 
     The results are saved after each, so that little is lost with an interrupt.
 
@@ -179,22 +193,16 @@ def run_all(
         tasks: The plans.
         crew: Those who run them.
         out_dir: Where the results go.
-        earlier: Rows of an earlier batch by their plan.
-        told: Called with each row, the earlier ones first.
+        kept: Rows that are there already, by the task's number.
+        told: Called with each new row.
 
     Raises:
         InputError: If the results cannot be saved.
     """
-    rows = {
-        number: row
-        for number, task in enumerate(tasks)
-        if (row := earlier.get(task.plan)) is not None and is_done(task, row)
-    }
-    for row in rows.values():
-        told(row)
+    rows = dict(kept)
     left = [number for number in range(len(tasks)) if number not in rows]
-    for task in tasks:
-        Path(task.output).parent.mkdir(parents=True, exist_ok=True)
+    for folder in {out_dir, *(Path(task.output).parent for task in tasks)}:
+        folder.mkdir(parents=True, exist_ok=True)
     save(out_dir, list(rows.values()))
     for outcome in crew.outcomes(run_plan, [tasks[number] for number in left]):
         number = left[outcome.number]
