@@ -167,7 +167,7 @@ def expand(document: Drawing, *, xrefs: Xrefs, include_hidden: bool) -> Expansio
 def _space(document: Drawing) -> tuple[BaseLayout, list[Finding]]:
     """Model space; the fullest layout where model space is empty."""
     model = document.modelspace()
-    layouts = [document.paperspace(name) for name in document.layout_names() if name != "Model"]
+    layouts = [layout for layout in document.layouts if not layout.is_modelspace]
     fullest = max(layouts, key=_n_drawn, default=model)
     if len(model) or not _n_drawn(fullest):
         return model, []

@@ -23,7 +23,17 @@ from satAOI_adapters.layers import LayerTable
 from satAOI_geo.errors import UnreadableError
 from satAOI_geo.plan import Finding
 
-FAULTS: Final = (DXFError, ValueError, LookupError, TypeError, AttributeError, RecursionError)
+FAULTS: Final = (
+    DXFError,
+    ValueError,
+    ArithmeticError,
+    LookupError,
+    TypeError,
+    AttributeError,
+    AssertionError,
+    StopIteration,
+    RecursionError,
+)
 """What ezdxf raises on damaged drawings."""
 
 ENTITY: Final = re.compile(
