@@ -230,6 +230,14 @@ def test_a_plan_is_run_again_when_something_changes(
 
 
 @pytest.mark.usefixtures("texts")
+def test_a_name_that_is_no_text_is_told_with_escapes() -> None:
+    Path("a.dxf").rename("a\udcb6.dxf")
+    assert run_here() == ["a\udcb6.dxf", "b.dxf", "c.dxf"]
+    assert next(iter(rows_of(Path()))) == "a\\udcb6.dxf"
+    assert run_here() == ["b.dxf"]
+
+
+@pytest.mark.usefixtures("texts")
 def test_another_option_or_version_is_another_question(monkeypatch: pytest.MonkeyPatch) -> None:
     run_here("--step=20")
     assert run_here("--step=10") == ["a.dxf", "b.dxf", "c.dxf"]

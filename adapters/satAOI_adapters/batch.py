@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Final
 
 import satAOI_geo
-from satAOI_adapters.batch_results import Row, save
+from satAOI_adapters.batch_results import Row, printable, save
 from satAOI_adapters.cluster import Outcome, Workers
 from satAOI_geo.errors import InputError, LimitError
 
@@ -161,20 +161,19 @@ def rows_kept(tasks: Sequence[Task], earlier: Mapping[str, Row]) -> dict[int, Ro
     return {
         number: row
         for number, task in enumerate(tasks)
-        if (row := earlier.get(task.plan)) is not None and _is_done(task, row)
+        if (row := earlier.get(printable(task.plan))) is not None and _is_done(task, row)
     }
 
 
 def _is_done(task: Task, row: Row) -> bool:
     """Whether a row tells what a run of the task would give, and its files are there."""
-    same = (row.output, row.report, row.sha256, row.asked, row.version) == (
-        task.output,
-        task.report,
+    same = (row.output, row.sha256, row.asked, row.version) == (
+        printable(task.output),
         task.sha256,
         task.asked,
         satAOI_geo.__version__,
     )
-    return same and row.exit_code == DONE and all(map(os.path.isfile, (row.output, row.report)))
+    return same and row.exit_code == DONE and all(map(os.path.isfile, (task.output, task.report)))
 
 
 def run_all(

@@ -4,9 +4,9 @@ import csv
 import io
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final, Literal
+from typing import Annotated, Final, Literal, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from satAOI_adapters.files import written_whole
 
@@ -14,11 +14,19 @@ JSON_NAME: Final = "results.json"
 CSV_NAME: Final = "results.csv"
 
 
+def printable(name: str) -> str:
+    """A name as text for files: bytes in it that are no text are written as escapes."""
+    return name.encode("utf-8", "backslashreplace").decode()
+
+
+Text: TypeAlias = Annotated[str, BeforeValidator(printable)]
+
+
 class Row(BaseModel):
     """What came of a plan; figures are None where there is no area.
 
     Attributes:
-        plan: As the user gave it.
+        plan: As the user gave it, printable.
         exit_code: That of its run, 128 + N when signal N ended it.
         area_m2: Area of interest.
         percent_of_free: The same in percent of the free floor.
@@ -34,15 +42,15 @@ class Row(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    plan: str
+    plan: Text
     exit_code: int
     area_m2: float | None = None
     percent_of_free: float | None = None
     n_findings: int | None = None
     time_s: float
-    message: str = ""
-    output: str
-    report: str
+    message: Text = ""
+    output: Text
+    report: Text
     sha256: str
     asked: str
     version: str
