@@ -254,7 +254,9 @@ def test_results_of_the_batch_are_no_plans() -> None:
         batch.run_all(tasks, Here(), Path(), kept={}, told=lambda _: None)
 
 
-def test_options_are_handed_on_as_they_were_written(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_options_are_handed_on_as_they_were_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     handed: list[str] = []
 
     def note(_plans: object, _out: object, options: list[str], _named: object) -> list[batch.Task]:
@@ -263,7 +265,7 @@ def test_options_are_handed_on_as_they_were_written(monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(batch, "tasks_of", note)
     written = ["--start=-1.50,2,90,0", "--include-hidden", "--align", "auto", "--step", "20"]
-    main(["batch", str(Path(__file__)), "-q", "--out-dir", "nowhere/at/all", "--again", *written])
+    assert main(["batch", __file__, "-q", "--out-dir", str(tmp_path), "--again", *written]) == 0
     assert sorted(handed) == [
         "--align=auto",
         "--include-hidden",
