@@ -15,8 +15,8 @@ from satAOI_geo.errors import InputError, LimitError
 from satAOI_geo.plan import FloatArray
 from satAOI_geo.robot import Pose, Robot
 
-MAX_NODES: Final = 100_000_000
-"""10 000 m² at 10 mm: its 312 poses take 4 GB."""
+MAX_NODES: Final = 1_000_000_000
+"""100 000 m² at 10 mm: more is a wrong unit rather than a floor."""
 
 WORD_BITS: Final = 64
 

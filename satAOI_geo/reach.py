@@ -10,8 +10,9 @@ not bounded.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from tempfile import TemporaryFile
 from threading import Lock
 from typing import Final, NamedTuple
 
@@ -95,14 +96,16 @@ class Band:
     Attributes:
         lattice: The rows, as a band of the whole lattice.
         runs: The states, as runs.
-        labels: Shape (n_runs,): number of each run's set, 0 .. n_sets - 1, all in use.
-        n_sets: How many sets there are.
+        labels: Shape (n_runs,): number of each run's set.
+        lowest: Shape (n_sets,), see `_lowest_states`.
+        stretches: The nodes of each set: label, row of the whole lattice, first and last column.
     """
 
     lattice: Lattice
     runs: Runs
-    labels: npt.NDArray[np.int32]
-    n_sets: int
+    labels: Int32Array
+    lowest: npt.NDArray[np.int64]
+    stretches: tuple[Int32Array, Int32Array, Int32Array, Int32Array]
 
     @classmethod
     def of(
@@ -137,19 +140,15 @@ class Band:
         run_threads(step_up, lattice.n_directions, share[1])
         run_threads(move, lattice.n_directions, share[2])
         labels, n_sets = _numbered(joined.parents)
-        return cls(lattice, runs, labels, n_sets)
+        row = runs.rows() + np.int32(lattice.first_row)
+        stretches = merged(labels, row, runs.begin, runs.end)
+        lowest = _lowest_states(lattice, runs, row, labels, n_sets)
+        return cls(lattice, runs, labels, lowest, stretches)
 
-    def lowest_states(self) -> npt.NDArray[np.int64]:
-        """For each set a number that puts its states in the order of row, pose and column.
-
-        It is that of the first of them, and the same however the lattice is cut into bands.
-        """
-        lattice, runs = self.lattice, self.runs
-        n_poses = lattice.n_directions * len(lattice.swings)
-        line = (runs.rows().astype(np.int64) + lattice.first_row) * n_poses + runs.poses()
-        lowest = np.full(self.n_sets, np.iinfo(np.int64).max)
-        np.minimum.at(lowest, self.labels, line * lattice.n_columns + runs.begin)
-        return lowest
+    def aside(self) -> "Band":
+        """The same band with its runs in a file that the system maps into memory as needed."""
+        runs = replace(self.runs, begin=_in_file(self.runs.begin), end=_in_file(self.runs.end))
+        return replace(self, runs=runs, labels=_in_file(self.labels))
 
     def on_row(self, iy: int) -> npt.NDArray[np.int32]:
         """The sets of the runs on one of its rows, pose after pose."""
@@ -180,7 +179,7 @@ class PoseComponents:
     @classmethod
     def of(cls, lattice: Lattice, bands: Sequence[Band]) -> "PoseComponents":
         """The sets of the whole lattice from those of its bands, lowest first."""
-        first = np.cumsum([0, *(band.n_sets for band in bands)])
+        first = np.cumsum([0, *(band.lowest.size for band in bands)])
         parents = np.arange(first[-1], dtype=np.int32)
         for k, (below, above) in enumerate(pairwise(bands)):
             # the row that two bands share has the same runs in both
@@ -189,12 +188,13 @@ class PoseComponents:
             unite(parents, np.column_stack((upper, lower)).astype(np.int32))
         joined, n_sets = _numbered(parents)
         lowest = np.full(n_sets, np.iinfo(np.int64).max)
-        np.minimum.at(lowest, joined, np.concatenate([band.lowest_states() for band in bands]))
+        np.minimum.at(lowest, joined, np.concatenate([band.lowest for band in bands]))
         place = np.empty(n_sets, dtype=np.int32)
         place[np.argsort(lowest)] = np.arange(n_sets)
         numbers = tuple(np.split(place[joined], first[1:-1]))
+        # on the row that two bands share both have the same stretches
         parts = [
-            _stretches(band, own, has_last_row=band is bands[-1])
+            (own[band.stretches[0]], *band.stretches[1:])
             for band, own in zip(bands, numbers, strict=True)
         ]
         labels, row, begin, end = (np.concatenate(part) for part in zip(*parts, strict=True))
@@ -238,14 +238,28 @@ class PoseComponents:
         return labels
 
 
-def _stretches(
-    band: Band, numbers: npt.NDArray[np.int32], *, has_last_row: bool
-) -> tuple[Int32Array, Int32Array, Int32Array, Int32Array]:
-    """Set, row, first and last column of the stretches of a band's nodes, see `merged`."""
-    rows = band.runs.rows()
-    own = rows < band.lattice.n_rows - (not has_last_row)
-    labels, rows = numbers[band.labels[own]], rows[own] + np.int32(band.lattice.first_row)
-    return merged(labels, rows, band.runs.begin[own], band.runs.end[own])
+def _lowest_states(
+    lattice: Lattice, runs: Runs, row: Int32Array, labels: Int32Array, n_sets: int
+) -> npt.NDArray[np.int64]:
+    """For each set a number that puts its states in the order of row, pose and column.
+
+    It is that of the first of them, and the same however the lattice is cut into bands.
+    """
+    n_poses = lattice.n_directions * len(lattice.swings)
+    line = row.astype(np.int64) * n_poses + runs.poses()
+    lowest = np.full(n_sets, np.iinfo(np.int64).max)
+    np.minimum.at(lowest, labels, line * lattice.n_columns + runs.begin)
+    return lowest
+
+
+def _in_file(values: Int32Array) -> Int32Array:
+    """The values in a file without a name, which is gone with the last array that shows it."""
+    if not values.size:
+        return values
+    with TemporaryFile() as file:
+        values.tofile(file)
+        # as if it could be written to: a kernel is compiled anew for arrays that cannot
+        return np.asarray(np.memmap(file, dtype=values.dtype, mode="c"))
 
 
 def _ranges(shape: tuple[int, int], rows: slice, columns: slice) -> tuple[range, range]:

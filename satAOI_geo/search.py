@@ -154,18 +154,19 @@ def _explored(
 ) -> tuple[Nodes, int, list[Band]]:
     """Nodes at which some pose is free, how many states are, and the states band by band."""
     free = np.empty(lattice.no_nodes().shape, dtype=np.uint64)
-    n_states, bands = 0, []
+    n_states, bands, whole = 0, [], slice(0, lattice.n_rows)
     for rows in _bands(lattice, memory_gb):
-        here, band = engine.band(rows), lattice.band(rows)
+        here = engine.band(rows)
         share = rows.start / lattice.n_rows, rows.stop / lattice.n_rows
         with watch.stage("free space", *share):
-            space = free_space(here, robot, band, watch.share)
+            space = free_space(here, robot, lattice.band(rows), watch.share)
             free[rows] = space.free_nodes().words
             # the last row is the next band's, too
-            own = band.n_rows - (rows.stop < lattice.n_rows)
-            n_states += space.n_states(slice(own))
+            own = slice(rows.stop - rows.start - (rows.stop < lattice.n_rows))
+            n_states += space.n_states(own)
         with watch.stage("reach", *share):
-            bands.append(Band.of(here, robot, space, watch.share))
+            band = Band.of(here, robot, space, watch.share)
+            bands.append(band if rows == whole else band.aside())
     return Nodes(free, lattice.n_columns), n_states, bands
 
 

@@ -151,9 +151,9 @@ def test_directions_that_are_no_multiple_of_four_are_refused(n_directions: int) 
 
 def test_floor_of_too_many_nodes_is_refused_with_both_figures() -> None:
     with pytest.raises(LimitError) as refusal:
-        Lattice.over((0.0, 0.0, 1e5, 1e5 + 10), PROTOTYPE)
-    assert (refusal.value.value, refusal.value.allowed) == (10_000 * 10_001, MAX_NODES)
-    assert Lattice.over((0.0, 0.0, 1e5, 1e5), PROTOTYPE).shape == (10_000, 10_000)
+        Lattice.over((0.0, 0.0, 1e5, 1e6 + 10), PROTOTYPE)
+    assert (refusal.value.value, refusal.value.allowed) == (10_000 * 100_001, MAX_NODES)
+    assert Lattice.over((0.0, 0.0, 1e5, 1e6), PROTOTYPE).shape == (100_000, 10_000)
 
 
 @pytest.mark.parametrize("n_columns", [1, 63, 64, 65, 128])
