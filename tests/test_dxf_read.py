@@ -418,6 +418,13 @@ def test_hidden_layer_is_left_out_and_said(state: str, tmp_path: Path) -> None:
     assert len(plan_of(document, tmp_path, include_hidden=True).obstacles) == 1
 
 
+def test_own_frozen_layer_is_not_said_to_be_hidden(tmp_path: Path) -> None:
+    document = drawing()
+    document.layers.add("SATAOI-ZONE").freeze()
+    rectangle(document.modelspace(), 0, 0, 1, 1, layer="SATAOI-ZONE")
+    assert codes(plan_of(document, tmp_path)) == []
+
+
 def test_layer_that_is_not_plotted_is_read(tmp_path: Path) -> None:
     document = drawing()
     rectangle(document.modelspace(), 1000, 1000, 2000, 2000, layer="COLUMN")

@@ -203,6 +203,42 @@ def test_window_stops_the_robot(tmp_path: Path) -> None:
     assert window.kind is Kind.WALL
 
 
+def with_opening(*across_mm: float) -> Drawing:
+    """A wall 200 mm thick with an opening of 1200 mm, and lines across it on the door layer."""
+    document = drawing()
+    rectangle(document.modelspace(), 0, 5000, 4000, 5200, layer="WALL")
+    rectangle(document.modelspace(), 5200, 5000, 10_000, 5200, layer="WALL")
+    for y in across_mm:
+        document.modelspace().add_line((4000, y), (5200, y), dxfattribs={"layer": "A-DOOR"})
+    return document
+
+
+def test_window_on_the_door_layer_stops_the_robot_and_is_said(tmp_path: Path) -> None:
+    plan = plan_of(with_opening(5000, 5100, 5200), tmp_path)
+    assert plan.obstacle_region().covers(box(4000, 5000, 5200, 5200))
+    assert "window-on-door-layer" in codes(plan)
+
+
+def test_threshold_of_two_lines_is_no_window(tmp_path: Path) -> None:
+    plan = plan_of(with_opening(5000, 5200, 5200), tmp_path)
+    assert standing(plan, "A-DOOR") == []
+
+
+def test_opening_with_a_swing_is_no_window(tmp_path: Path) -> None:
+    document = with_opening(5000, 5100, 5200)
+    on = {"layer": "A-DOOR"}
+    document.modelspace().add_arc((4000, 5200), 1200, 0, 90, dxfattribs=on)
+    assert standing(plan_of(document, tmp_path), "A-DOOR") == []
+
+
+def test_column_is_no_inside_of_a_wall(tmp_path: Path) -> None:
+    document = drawing()
+    document.modelspace().add_line((0, 5000), (4000, 5000), dxfattribs={"layer": "WALL"})
+    rectangle(document.modelspace(), 4000, 4900, 4300, 5200, layer="COLUMN")
+    plan = plan_of(document, tmp_path)
+    assert [o.kind for o in plan.obstacles if o.shape.area] == [Kind.COLUMN]
+
+
 def test_partition_drawn_on_the_door_layer_is_a_wall(tmp_path: Path) -> None:
     document = drawing()
     space = document.modelspace()

@@ -12,7 +12,6 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -25,7 +24,7 @@ from satAOI_adapters.dxf_read.curves import Arc, Line, Path
 from satAOI_adapters.dxf_read.entities import Feature
 from satAOI_adapters.dxf_read.linework import PARALLEL
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
-from satAOI_geo.plan import Finding, FloatArray
+from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray
 
 JAMB_MM: Final = 300.0
 """A line that ends this close to walls on both sides spans the opening between them."""
@@ -66,26 +65,32 @@ def partitions(
         walls: Walls that are known already.
         door_blocks: Names of blocks that are doors.
     """
-    loose = [
-        (feature, piece)
+    pieces = loose_pieces(doors, door_blocks)
+    if not pieces:
+        return []
+    lines = as_lines(pieces)
+    lengths_mm = shapely.length(lines)
+    is_long = lengths_mm > LEAF_MM
+    faces = (lengths_mm > PARTITION_MM) & ~spanning(lines, walls, JAMB_MM) & _in_pairs(lines)
+    is_wall = is_long & (_in_corners(lines, is_long) | faces)
+    return [piece for piece, wall in zip(pieces, is_wall, strict=True) if wall]
+
+
+def loose_pieces(doors: Sequence[Feature], door_blocks: frozenset[str]) -> list[Feature]:
+    """The straight pieces of open lines, each as a feature, that are in no door's block."""
+    return [
+        replace(feature, paths=(Path((piece,), closed=False),))
         for feature in doors
+        if door_blocks.isdisjoint(feature.placed.blocks)
         for path in feature.paths
         if path.is_straight and not path.closed
         for piece in path.pieces
-        if isinstance(piece, Line) and door_blocks.isdisjoint(feature.placed.blocks)
     ]
-    if not loose:
-        return []
-    lines = [LineString((piece.start, piece.end)) for _, piece in loose]
-    lengths_mm = shapely.length(lines)
-    is_long = lengths_mm > LEAF_MM
-    faces = (lengths_mm > PARTITION_MM) & ~_spanning(lines, walls) & _in_pairs(lines)
-    is_wall = is_long & (_in_corners(lines, is_long) | faces)
-    return [
-        replace(feature, paths=(Path((piece,), closed=False),))
-        for (feature, piece), wall in zip(loose, is_wall, strict=True)
-        if wall
-    ]
+
+
+def as_lines(pieces: Sequence[Feature]) -> list[LineString]:
+    """Features of one straight piece each as lines."""
+    return [LineString((path.start, path.end)) for piece in pieces for path in piece.paths]
 
 
 def without_swings(features: Sequence[Feature]) -> tuple[list[Feature], int]:
@@ -99,7 +104,7 @@ def without_swings(features: Sequence[Feature]) -> tuple[list[Feature], int]:
         for feature in features
         for path in feature.paths
         for piece in path.pieces
-        if isinstance(piece, Arc) and _may_be_swing(piece)
+        if isinstance(piece, Arc) and may_be_swing(piece)
     ]
     lines = [
         piece
@@ -148,7 +153,8 @@ def _holds(swing: Arc, path: Path) -> bool:
     )
 
 
-def _may_be_swing(arc: Arc) -> bool:
+def may_be_swing(arc: Arc) -> bool:
+    """Whether an arc is as large as those that doors draw."""
     radius_mm = math.hypot(*arc.u)
     return arc.is_round and LEAST_LEAF_MM <= radius_mm <= LEAF_MM and arc.sweep_rad <= WIDEST_RAD
 
@@ -189,30 +195,36 @@ def spans(doors: Sequence[Feature], walls: Sequence[BaseGeometry]) -> list[LineS
         for piece in path.pieces
         if isinstance(piece, Line) and math.dist(piece.start, piece.end) > JAMB_MM
     ]
-    spanning = _spanning(lines, walls)
-    return [line for line, does in zip(lines, spanning, strict=True) if does]
+    return [line for line, does in zip(lines, spanning(lines, walls, JAMB_MM), strict=True) if does]
 
 
-def _spanning(lines: Sequence[LineString], walls: Sequence[BaseGeometry]) -> npt.NDArray[np.bool_]:
-    """Which lines end at walls on both sides."""
+def spanning(
+    lines: Sequence[LineString], walls: Sequence[BaseGeometry], within_mm: float
+) -> BoolArray:
+    """Which lines end at walls on both sides, or as close to them."""
     known = shapely.STRtree(walls)
     at_walls = np.ones(len(lines), dtype=bool)
     for end in (0, -1):
-        near, _ = known.query(shapely.get_point(lines, end), predicate="dwithin", distance=JAMB_MM)
+        near, _ = known.query(
+            shapely.get_point(lines, end), predicate="dwithin", distance=within_mm
+        )
         at_walls &= np.isin(np.arange(len(lines)), near)
     return at_walls
 
 
-def _in_corners(
-    lines: Sequence[LineString], is_long: npt.NDArray[np.bool_]
-) -> npt.NDArray[np.bool_]:
+def linked(pairs: IntArray, n: int) -> IntArray:
+    """The number of the group that each of n things is in, linked by pairs, shape (pairs, 2)."""
+    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    _, group = connected_components(links, directed=False)
+    return np.asarray(group, dtype=np.int64)
+
+
+def _in_corners(lines: Sequence[LineString], is_long: BoolArray) -> BoolArray:
     """Which lines are in a chain, joined end to end, with long lines in two directions."""
     n = len(lines)
     ends = [line.coords[k] for line in lines for k in (0, -1)]
-    pairs = cKDTree(ends).query_pairs(CLOSE_GAPS_MM, output_type="ndarray") // 2
-    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    _, chain = connected_components(links, directed=False)
-    along = _directions(lines)
+    chain = linked(cKDTree(ends).query_pairs(CLOSE_GAPS_MM, output_type="ndarray") // 2, n)
+    along = directions(lines)
     turns = np.zeros(n, dtype=bool)
     for k in np.unique(chain[is_long]):
         (first, *_), members = along[is_long & (chain == k)], chain == k
@@ -221,16 +233,16 @@ def _in_corners(
     return turns
 
 
-def _directions(lines: Sequence[LineString]) -> FloatArray:
+def directions(lines: Sequence[LineString]) -> FloatArray:
     """Unit vectors along lines, shape (n, 2)."""
     ends = np.array([(line.coords[0], line.coords[-1]) for line in lines])
     along = ends[:, 1] - ends[:, 0]
     return np.asarray(along / np.maximum(np.hypot(*along.T), CLOSE_GAPS_MM)[:, np.newaxis])
 
 
-def _in_pairs(lines: Sequence[LineString]) -> npt.NDArray[np.bool_]:
+def _in_pairs(lines: Sequence[LineString]) -> BoolArray:
     """Which lines have a parallel one beside them, as the faces of a wall do."""
-    along = _directions(lines)
+    along = directions(lines)
     near, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=FACES_MM)
     sines = np.abs(along[near, 0] * along[other, 1] - along[near, 1] * along[other, 0])
     long_enough = shapely.length(lines)[other] > PARTITION_MM

@@ -30,6 +30,7 @@ from satAOI_adapters.dxf_read.shapes import middle_line
 from satAOI_adapters.dxf_read.survey import Survey, survey
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_adapters.dxf_read.unclassified import unclassified
+from satAOI_adapters.dxf_read.windows import window_findings, windows
 from satAOI_adapters.layers import KINDS, Meaning
 from satAOI_geo.errors import InputError
 from satAOI_geo.plan import (
@@ -144,14 +145,17 @@ def _standing(drawn: Drawn, terms: Terms, door_blocks: frozenset[str]) -> Standi
     parts = [solids(by_kind[kind], kind, terms) for kind in SOLID_KINDS]
     columns = parts[SOLID_KINDS.index(Kind.COLUMN)].obstacles
     drawn_as_walls, n_doors = without_swings(by_kind[Kind.WALL])
-    on_door_layers = partitions(drawn[Meaning.DOOR], _lines(drawn_as_walls), door_blocks)
+    faces = _lines(drawn_as_walls)
+    on_door_layers = partitions(drawn[Meaning.DOOR], faces, door_blocks)
+    glazed = windows(drawn[Meaning.DOOR], faces, door_blocks)
     edges = _lines(drawn[Meaning.FLOOR], only_closed=True)
-    parts.append(walls([*drawn_as_walls, *on_door_layers], columns, edges, terms))
+    parts.append(walls([*drawn_as_walls, *on_door_layers, *glazed], columns, edges, terms))
     return Standing(
         tuple(obstacle for part in parts for obstacle in part.obstacles),
         (
             *(finding for part in parts for finding in part.findings),
             *partition_findings(on_door_layers),
+            *window_findings(glazed),
             *_doors_among_walls(n_doors),
         ),
     )

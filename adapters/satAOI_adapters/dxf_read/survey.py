@@ -29,6 +29,9 @@ from satAOI_geo.plan import Finding, FloatArray, Frame, Source
 FEET_AND_INCHES: Final = (3, 4)
 """$LUNITS of a drawing that writes lengths in feet and inches."""
 
+OWN_PREFIX: Final = "SATAOI-"
+"""Layers of this program's own output, of which some are frozen; a plan needs none of them."""
+
 NO_UNIT: Final = 0
 """$INSUNITS of a drawing that does not say."""
 
@@ -280,6 +283,8 @@ def _what_else(expansion: Expansion) -> str:
 
 def _hidden(hidden: Counter[str]) -> Iterable[Finding]:
     for layer, count in hidden.items():
+        if layer.upper().startswith(OWN_PREFIX):
+            continue
         yield Finding(
             "layer-hidden",
             f"{count} entities on layer '{layer}' are not read: frozen, off or invisible",
