@@ -39,6 +39,17 @@ def test_arcs_cut_into_chords_come_back_wherever_the_ring_begins(loop: Loop, beg
     assert found.area_mm2() == pytest.approx(loop.area_mm2(), rel=1e-10)
 
 
+@pytest.mark.parametrize("begin", [0, 1, 29, 30, 100])
+def test_arcs_whose_corners_keep_their_area_come_back_with_their_true_ends(begin: int) -> None:
+    # the corners between the ends lie on a circle of their own, a few micrometres larger
+    loop = results.rounded_rectangle(2000, 3000, 350)
+    corners_mm = np.roll(loop.equal_area_points_mm(0.01), -begin, axis=0)
+    found = loop_with_arcs(LinearRing(corners_mm))
+    assert sorted(found.vertices.tolist()) == [
+        pytest.approx(vertex, abs=1e-6) for vertex in sorted(loop.vertices.tolist())
+    ]
+
+
 @pytest.mark.parametrize("bulge", [1.0, -1.0])
 def test_corners_all_around_a_circle_are_two_half_circles(bulge: float) -> None:
     ring = ring_about(400, 350.0)

@@ -45,12 +45,14 @@ def loop_with_arcs(ring: LinearRing) -> Loop:
     before, after = _neighbours(corners)
     centres, bends_left = _circles(corners, before, after)
     inner = _within_arcs(corners, before, after, centres)
+    for step in (1, -1):
+        _run_on(corners, centres, bends_left, inner, step)
     if np.count_nonzero(inner) > inner.size - 2:
         # one circle: no bulge makes an arc that ends where it begins
         begin = int(inner.argmin())
         inner[[begin, begin - inner.size // 2]] = False
     (begins,) = np.nonzero(~inner)
-    # all corners within an arc have its circle, so the first of them has
+    # all corners within an arc have its circle, so has the first of them
     first = (begins + 1) % inner.size
     curved = inner[first]
     first = first[curved]
@@ -113,3 +115,22 @@ def _within_arcs(corners: Points, before: Points, after: Points, centres: Points
     inner = alike | alike_before
     # where one circle follows another at once, the corner between them stays
     return inner & ~(alike & ~alike_before & np.roll(inner, 1))
+
+
+def _run_on(
+    corners: Points, centres: Points, bends_left: BoolArray, inner: BoolArray, step: int
+) -> None:
+    """Let arcs run on over one more chord, ahead (step 1) or back (-1), if that ends on the circle.
+
+    The chords at the ends of an arc may be shorter than the others, or their corners a hair off.
+    The corner run over joins `inner`, with the arc's circle.
+    """
+    ends = np.flatnonzero(~inner & np.roll(inner, step) & ~np.roll(inner, -step))
+    within, beyond = (ends - step) % inner.size, (ends + step) % inner.size
+    radii_mm = np.abs(corners[within] - centres[within])
+    off_mm = np.abs(np.abs(corners[beyond] - centres[within]) - radii_mm)
+    chords_mm = np.abs(corners[beyond] - corners[ends])
+    runs_on = (off_mm <= RISE_MM) & (chords_mm**2 <= 8 * RISE_MM * radii_mm)
+    ends, within = ends[runs_on], within[runs_on]
+    inner[ends] = True
+    centres[ends], bends_left[ends] = centres[within], bends_left[within]
