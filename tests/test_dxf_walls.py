@@ -6,8 +6,10 @@ from pathlib import Path
 import ezdxf
 import pytest
 import shapely
+from ezdxf import transform
 from ezdxf.document import Drawing
 from ezdxf.layouts import Modelspace
+from ezdxf.math import Matrix44
 from shapely.geometry import LineString, Polygon, box
 
 from satAOI_geo.errors import EmptyPlanError
@@ -364,3 +366,18 @@ def test_outline_of_a_room_is_a_wall_face_where_no_layer_of_walls_exists(tmp_pat
     rectangle(document.modelspace(), 0, 0, 6400, 4400, layer="XYZ")
     rectangle(document.modelspace(), 200, 200, 6200, 4200, layer="ROOM")
     assert plan_of(document, tmp_path).free_region().area == 6000 * 4000
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 30.0])
+def test_ticks_across_a_single_line_wall_hold_no_floor_between_them(
+    turn_deg: float, tmp_path: Path
+) -> None:
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = MM
+    space = document.modelspace()
+    lines(space, [(0, 0), (8000, 0), (8000, 5000), (0, 5000)], layer="WALL")
+    for x in (1000, 1950, 2900, 4200, 5150):
+        space.add_line((x, 4950), (x, 5050), dxfattribs={"layer": "WALL"})
+    transform.inplace(space, Matrix44.z_rotate(math.radians(turn_deg)))
+    # corners are kept to 1e-5 mm
+    assert plan_of(document, tmp_path).floor.area == pytest.approx(8000 * 5000, rel=1e-8)

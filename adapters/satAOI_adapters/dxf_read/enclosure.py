@@ -28,6 +28,9 @@ OPENING_MM: Final = 2500.0
 OPENING_STEPS_MM: Final = (1000.0, 1500.0, 2000.0, OPENING_MM)
 """Openings are closed from narrow to wide, so that each is closed where it is narrowest."""
 
+FAR_MM: Final = 4 * OPENING_MM
+"""Around all walls there is this much space that is outside."""
+
 SAMPLE_MM: Final = 100.0
 """Distance of the points that stand for a wall when openings are looked for."""
 
@@ -67,7 +70,15 @@ class Mesh:
 
     @classmethod
     def over(cls, points: FloatArray) -> "Mesh":
-        """The triangulation of points that do not all lie on one line."""
+        """The triangulation of points that do not all lie on one line, and of four far away.
+
+        Without these the outermost points would lie on the rim of the triangulation, where those
+        in one line count or do not as roundings have it.
+        """
+        left, bottom = points.min(axis=0) - FAR_MM
+        right, top = points.max(axis=0) + FAR_MM
+        corners_mm = ((left, bottom), (right, bottom), (right, top), (left, top))
+        points = np.vstack((points, corners_mm))
         delaunay = Delaunay(points)
         corners = delaunay.simplices
         # side k lies opposite corner k, as neighbour k does

@@ -19,7 +19,7 @@ from shapely.geometry import Point as Spot
 
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
-from satAOI_adapters.dxf_read.shapes import SAME_MM, GeometryArray, rounded
+from satAOI_adapters.dxf_read.shapes import SAME_MM, TIE_MM, GeometryArray, rounded
 from satAOI_geo.plan import IntArray, polygons_in
 
 NEAR_MISS_MM: Final = 50.0
@@ -88,22 +88,22 @@ def network(lines: Sequence[LineString] | GeometryArray, gap_mm: float = CLOSE_G
         return Network((), (), 0, ())
     corners = [_corners(line) for line in lines]
     ends = _ends(corners)
-    within_mm = max(gap_mm, NEAR_MISS_MM)
+    joined_mm, missed_mm = gap_mm + TIE_MM, max(gap_mm, NEAR_MISS_MM) + TIE_MM
     joints: list[LineString] = []
     loose: list[tuple[Point, Point]] = []
     gaps: list[Gap] = []
     n_joined = 0
-    for (owner, end, outwards), around in zip(ends, _around(ends, lines, within_mm), strict=True):
+    for (owner, end, outwards), around in zip(ends, _around(ends, lines, missed_mm), strict=True):
         # lines with a corner here lie under the owner: nothing goes on from its end
         near = [lines[i] for i in around if end not in corners[i]]
-        foot = _nearest(near, end, _other_end(corners[owner], end, within_mm))
+        foot = _nearest(near, end, _other_end(corners[owner], end, missed_mm))
         width_mm = math.inf if foot is None else math.dist(end, foot)
-        if foot is not None and width_mm <= gap_mm:
+        if foot is not None and width_mm <= joined_mm:
             joints.append(_joint(end, foot, outwards))
             n_joined += width_mm > OVERSHOOT_MM
             continue
         loose.append((end, outwards))
-        if foot is not None and width_mm <= NEAR_MISS_MM:
+        if foot is not None and width_mm <= missed_mm:
             gaps.append(Gap(end, foot))
     return Network((*lines, *joints), tuple(loose), n_joined, _without_twins(gaps))
 
@@ -119,7 +119,7 @@ def with_wall_ends(joined: Network) -> Network:
     tree = cKDTree([end for end, _ in joined.loose])
     pairs = sorted(
         (math.dist(joined.loose[i][0], joined.loose[j][0]), i, j)
-        for i, j in tree.query_pairs(WALL_MM)
+        for i, j in tree.query_pairs(WALL_MM + TIE_MM)
     )
     caps: list[LineString] = []
     capped: set[int] = set()
@@ -141,7 +141,7 @@ def with_wall_ends_at(joined: Network, edges: Sequence[LineString]) -> Network:
     caps = []
     for end, outwards in joined.loose:
         spot = Spot(end)
-        near = [sides[i] for i in tree.query(spot, predicate="dwithin", distance=WALL_MM)]
+        near = [sides[i] for i in tree.query(spot, predicate="dwithin", distance=WALL_MM + TIE_MM)]
         beside = [side for side in near if _is_parallel(side, outwards) and side.distance(spot)]
         if beside:
             nearest = min(beside, key=spot.distance)

@@ -7,7 +7,7 @@ width stays one; a curve without width becomes a sliver, at most twice that wide
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import TypeAlias, TypeVar
+from typing import Final, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,9 @@ GeometryT = TypeVar("GeometryT", bound=BaseGeometry | GeometryArray)
 
 SAME_MM = 10.0**-LOCAL_DIGITS
 """The grid of coordinates: what is this close is one."""
+
+TIE_MM: Final = 1e-3
+"""A length this close to a limit is at it: round measures of turned drawings miss by a rounding."""
 
 
 def circle_of(path: Path) -> Circle | None:
@@ -68,6 +71,7 @@ def is_wide(path: Path, width_mm: float) -> bool:
 
 def is_thin(region: BaseGeometry, width_mm: float) -> bool:
     """Whether no disc of this diameter fits into a region."""
+    width_mm += TIE_MM
     left, bottom, right, top = region.bounds
     # false for the bounds of nothing, which are not numbers
     if right - left <= width_mm or top - bottom <= width_mm:
