@@ -6,7 +6,8 @@ runs, so that `--help` answers at once.
 
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Unpack
 
@@ -36,6 +37,7 @@ from satAOI_geo.options import (
     QUIET,
     READING,
     ROUTE_OUTPUT,
+    SHARING,
     STRICT,
     TO,
     Batch,
@@ -44,6 +46,7 @@ from satAOI_geo.options import (
     Outputs,
     Question,
     Reading,
+    Sharing,
     StartAt,
     handed_on,
     taking,
@@ -62,6 +65,7 @@ from satAOI_geo.outputs import (
 
 if TYPE_CHECKING:
     from satAOI_adapters import Choices
+    from satAOI_adapters.cluster import Workers
     from satAOI_geo.pipeline import Result
     from satAOI_geo.plan import FloorPlan
     from satAOI_geo.progress import Progress
@@ -148,7 +152,7 @@ class PlanOptions(Reading, Question):
     """All that concerns a plan and what is asked about it."""
 
 
-class RunOptions(PlanOptions, Outputs):
+class RunOptions(PlanOptions, Sharing, Outputs):
     """All that `run` can be asked."""
 
     exact_outline: bool
@@ -156,14 +160,16 @@ class RunOptions(PlanOptions, Outputs):
 
 
 @commands.command(epilog=EPILOG)
-@taking(PLAN, OUTPUTS, EXACT_OUTLINE, READING, QUESTION, STRICT, QUIET)
+@taking(PLAN, OUTPUTS, EXACT_OUTLINE, READING, QUESTION, SHARING, STRICT, QUIET)
 def run(*, plan: Path, quiet: bool, **options: Unpack[RunOptions]) -> int:
     """Find the area of interest on a floor plan (DXF or IFC).
 
     Without --output, --report and --raster the figures are printed and nothing is written.
     """
     refuse_early(plan, options, read=[plan, Path(options["robot"]), options["layers"]])
-    result = answer(plan, options, exact_outline=options["exact_outline"], quiet=quiet)
+    with crew_of(options) as crew:
+        exact = options["exact_outline"]
+        result = answer(plan, options, exact_outline=exact, quiet=quiet, crew=crew)
     write(result, options)
     tell(result, options, quiet=quiet)
     return FINDINGS if options["strict"] and result.report.findings else DONE
@@ -280,8 +286,25 @@ def route_to(result: "Result", at: tuple[float, float]) -> "Route":
         raise NoRouteError(message, at_mm=error.at_mm) from error
 
 
+@contextmanager
+def crew_of(options: Sharing) -> Iterator["Workers | None"]:
+    """Those who share the search, for the time of a block; None where nobody is asked to."""
+    from satAOI_adapters.cluster import workers
+
+    if options["workers"] is None and options["scheduler"] is None:
+        yield None
+        return
+    with workers(n_workers=options["workers"], scheduler=options["scheduler"]) as crew:
+        yield crew
+
+
 def answer(
-    path: Path, options: PlanOptions, *, exact_outline: bool = False, quiet: bool
+    path: Path,
+    options: PlanOptions,
+    *,
+    exact_outline: bool = False,
+    quiet: bool,
+    crew: "Workers | None" = None,
 ) -> "Result":
     """Read a plan and find the area of interest on it."""
     from satAOI_adapters import kernel_cache
@@ -300,7 +323,7 @@ def answer(
     if not (compiled or quiet):
         say_note("first run of this version: compiling takes some seconds, once")
     with progress(quiet=quiet) as told:
-        return area_of_interest(plan, robot, settings, start=mark, progress=told)
+        return area_of_interest(plan, robot, settings, start=mark, progress=told, crew=crew)
 
 
 def mark_of(start: StartAt, plan: "FloorPlan") -> "StartMark":

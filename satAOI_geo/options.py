@@ -152,6 +152,32 @@ class Batch(TypedDict):
     again: bool
 
 
+class Sharing(TypedDict):
+    """Who shares the work of a run; None for nobody."""
+
+    workers: int | None
+    scheduler: str | None
+
+
+SHARING: Final[Group] = (
+    click.option(
+        "--workers",
+        metavar="N",
+        type=click.IntRange(min=1),
+        panel="The search",
+        help="Search the floor in bands of rows, so many at a time, each in a process of its own, "
+        "e.g. --workers 4. The answer is the same.",
+    ),
+    click.option(
+        "--scheduler",
+        metavar="ADDRESS",
+        panel="The search",
+        help="Search the floor in bands of rows on the workers of a Dask scheduler, e.g. "
+        "--scheduler tcp://192.168.1.20:8786",
+    ),
+)
+
+
 BATCH: Final[Group] = (
     click.argument("plans", nargs=-1, required=True),
     click.option(

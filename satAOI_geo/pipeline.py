@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from satAOI_geo.aoi import Aoi, area
+from satAOI_geo.bands import Crew
 from satAOI_geo.freespace import run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import FloorPlan
@@ -65,6 +66,7 @@ def area_of_interest(
     *,
     start: StartMark | None = None,
     progress: Progress | None = None,
+    crew: Crew | None = None,
 ) -> Result:
     """The floor that the robot can trowel from where it is set down.
 
@@ -75,6 +77,7 @@ def area_of_interest(
         start: Where it is set down, in the plan's frame; without it the plan's own mark, without
             that the component of the largest area.
         progress: Called with the stage's name and the share of it that is done.
+        crew: Workers in other processes that search the floor in bands, with the same answer.
 
     Raises:
         InputError: If a setting or the start's pose is out of range.
@@ -83,7 +86,7 @@ def area_of_interest(
         StartBlockedError: If no pose is free at the start.
     """
     watch = Stopwatch(progress)
-    found = search(plan, robot, settings, start=start, watch=watch)
+    found = search(plan, robot, settings, start=start, watch=watch, crew=crew)
     lattice, disc_mm = found.lattice, robot.disc_radius_mm
     with watch.stage("area"):
         nodes = {

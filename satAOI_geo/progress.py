@@ -23,9 +23,16 @@ class Stopwatch:
         self.timing_s: dict[str, float] = {}
 
     @contextmanager
-    def stage(self, name: str, begin: float = 0.0, end: float = 1.0) -> Iterator[None]:
-        """Time what happens inside under a name: all of a stage, or from one share to another."""
-        self._stage, self._shares = name, (begin, end)
+    def part(self, begin: float, end: float) -> Iterator[None]:
+        """Let the stages inside be parts of their kind only, from one share to another."""
+        self._shares = begin, end
+        yield
+        self._shares = 0.0, 1.0
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time what happens inside under a name."""
+        self._stage = name
         self.share(0.0)
         begin_s = time.perf_counter()
         yield

@@ -1,33 +1,25 @@
 """The search: plan → free space → connected sets → start."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
-import numpy as np
-
 from satAOI_geo.align import wall_direction_rad
+from satAOI_geo.bands import Crew, all_explored
 from satAOI_geo.collision import Collider, Reference
 from satAOI_geo.engine import Engine
 from satAOI_geo.errors import InputError, NothingFreeError
-from satAOI_geo.freespace import free_space
 from satAOI_geo.intervals import Intervals
-from satAOI_geo.lattice import WORD_BITS, Lattice
+from satAOI_geo.lattice import Lattice
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import FloorPlan
 from satAOI_geo.progress import Stopwatch
-from satAOI_geo.reach import Band, DiscComponents, PoseComponents
+from satAOI_geo.reach import DiscComponents, PoseComponents
 from satAOI_geo.robot import Robot
 from satAOI_geo.start import Start, StartFinder, StartMark
 from satAOI_geo.units import MM2_PER_M2
 
 Connectivity: TypeAlias = Literal["disc", "pose"]
-
-BYTES_PER_GB: Final = 1e9
-
-SPACES_AT_ONCE: Final = 3
-"""A free space, its runs, and what is in the hands of the threads take this many times its size."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,6 +95,7 @@ def search(
     *,
     start: StartMark | None,
     watch: Stopwatch,
+    crew: Crew | None = None,
 ) -> Search:
     """Find where the robot can be and what it can get to.
 
@@ -113,6 +106,7 @@ def search(
         start: The start in the plan's frame; without it the plan's own mark, without that the
             component of the largest area.
         watch: Times the stages.
+        crew: Workers that search the floor in bands.
 
     Raises:
         InputError: If a setting or the start's pose is out of range.
@@ -129,7 +123,9 @@ def search(
         plan.floor.bounds, robot, step_mm=settings.step_mm, n_directions=settings.n_directions
     )
     engine = _engine(plan, robot, lattice, settings)
-    free, n_states, bands = _explored(engine, robot, lattice, settings.memory_gb, watch)
+    free, n_states, bands = all_explored(
+        engine, robot, lattice, memory_gb=settings.memory_gb, watch=watch, crew=crew
+    )
     if not free.words.any():
         raise NothingFreeError(
             f"robot '{robot.name}' fits nowhere on this floor of {plan.floor.area / MM2_PER_M2:.2f}"
@@ -147,36 +143,6 @@ def search(
             else finder.at(mark.turned(turn_rad))
         )
     return Search(plan, robot, settings, lattice, engine, free, n_states, disc, pose, found)
-
-
-def _explored(
-    engine: Engine, robot: Robot, lattice: Lattice, memory_gb: float, watch: Stopwatch
-) -> tuple[Nodes, int, list[Band]]:
-    """Nodes at which some pose is free, how many states are, and the states band by band."""
-    free = np.empty(lattice.no_nodes().shape, dtype=np.uint64)
-    n_states, bands, whole = 0, [], slice(0, lattice.n_rows)
-    for rows in _bands(lattice, memory_gb):
-        here = engine.band(rows)
-        share = rows.start / lattice.n_rows, rows.stop / lattice.n_rows
-        with watch.stage("free space", *share):
-            space = free_space(here, robot, lattice.band(rows), watch.share)
-            free[rows] = space.free_nodes().words
-            # the last row is the next band's, too
-            own = slice(rows.stop - rows.start - (rows.stop < lattice.n_rows))
-            n_states += space.n_states(own)
-        with watch.stage("reach", *share):
-            band = Band.of(here, robot, space, watch.share)
-            bands.append(band if rows == whole else band.aside())
-    return Nodes(free, lattice.n_columns), n_states, bands
-
-
-def _bands(lattice: Lattice, memory_gb: float) -> Iterator[slice]:
-    """Rows of the lattice whose free space fits in memory, each with the first row of the next."""
-    n_poses = lattice.n_directions * len(lattice.swings)
-    row_bytes = n_poses * -(-lattice.n_columns // WORD_BITS) * WORD_BITS // 8
-    n_rows = max(int(memory_gb * BYTES_PER_GB / (SPACES_AT_ONCE * row_bytes)), 1)
-    for begin in range(0, lattice.n_rows, n_rows):
-        yield slice(begin, min(begin + n_rows + 1, lattice.n_rows))
 
 
 def _engine(plan: FloorPlan, robot: Robot, lattice: Lattice, settings: Settings) -> Engine:

@@ -2,8 +2,12 @@
 
 import os
 import time
+from collections.abc import Callable
 from pathlib import Path
-from typing import NoReturn
+from typing import NoReturn, TypeVar
+
+TaskT = TypeVar("TaskT")
+AnswerT = TypeVar("AnswerT")
 
 
 def squared(number: int) -> int:
@@ -21,6 +25,14 @@ def squared_the_second_time(mark_and_number: tuple[Path, int]) -> int:
         mark.touch()
         die()
     return number * number
+
+
+def dying_once(mark: Path, function: Callable[[TaskT], AnswerT], task: TaskT) -> AnswerT:
+    """End the first process that comes here; do as asked in all others."""
+    if not mark.exists():
+        mark.touch()
+        die()
+    return function(task)
 
 
 def deadly_if_one(number: int) -> int:

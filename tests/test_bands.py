@@ -1,0 +1,92 @@
+"""A floor cut into bands, in turn or by workers of which one dies: the same answer bit for bit."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from satAOI_adapters.cluster import Workers, workers
+from satAOI_geo.bands import BandTask, Explored, Outcome
+from satAOI_geo.errors import InputError, LimitError
+from satAOI_geo.pipeline import Result, area_of_interest
+from satAOI_geo.route import RouteMap
+from satAOI_geo.search import Settings
+from tests import cluster_jobs as jobs
+from tests import plans
+
+SETTINGS = Settings(step_mm=25.0, n_directions=12)
+
+TINY_GB = 0.0002
+"""Too little for the free space of any of these floors."""
+
+
+def assert_same(one: Result, other: Result) -> None:
+    """All figures, outlines and poses are equal to the last bit; the times differ."""
+    figures = [asdict(replace(result.report, timing_s={})) for result in (one, other)]
+    assert figures[0] == figures[1]
+    assert np.array_equal(one.aoi.cells.words, other.aoi.cells.words)
+    assert np.array_equal(one.search.free.words, other.search.free.words)
+    for zone, same in zip(one.zones, other.zones, strict=True):
+        for part, equal in zip(zone.aoi.outlines, same.aoi.outlines, strict=True):
+            assert np.array_equal(part.exterior.vertices, equal.exterior.vertices)
+    assert [patch.region for patch in one.patches] == [patch.region for patch in other.patches]
+
+
+@pytest.mark.parametrize("seed", range(81, 85))
+def test_a_floor_searched_with_little_memory_has_the_same_answer(seed: int) -> None:
+    plan = plans.random_plan(seed)
+    cut = area_of_interest(plan, settings=replace(SETTINGS, memory_gb=TINY_GB))
+    assert len(cut.search.pose.bands) > 1
+    assert_same(area_of_interest(plan, settings=SETTINGS), cut)
+
+
+@dataclass(frozen=True)
+class MortalCrew:
+    """Workers one of whom dies at the first band he is given."""
+
+    crew: Workers
+    mark: Path
+
+    def outcomes(
+        self, function: Callable[[BandTask], Explored], tasks: Iterable[BandTask]
+    ) -> Iterator[Outcome[Explored]]:
+        yield from self.crew.outcomes(partial(jobs.dying_once, self.mark, function), tasks)
+
+
+def test_workers_of_whom_one_dies_find_the_same_answer(tmp_path: Path) -> None:
+    plan = plans.random_plan(86)
+    mark = tmp_path / "died"
+    with workers(n_workers=2) as crew:
+        found = area_of_interest(plan, settings=SETTINGS, crew=MortalCrew(crew, mark))
+    assert mark.exists()
+    assert len(found.search.pose.bands) > 1
+    assert_same(area_of_interest(plan, settings=SETTINGS), found)
+
+
+def test_workers_of_dask_find_the_same_answer() -> None:
+    distributed = pytest.importorskip("distributed")
+    plan = plans.random_plan(87)
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=":0", memory_limit=0
+        ) as cluster,
+        workers(scheduler=cluster.scheduler_address) as crew,
+    ):
+        found = area_of_interest(plan, settings=SETTINGS, crew=crew)
+    assert_same(area_of_interest(plan, settings=SETTINGS), found)
+
+
+def test_routes_are_not_looked_for_in_bands() -> None:
+    plan = plans.random_plan(81)
+    cut = area_of_interest(plan, settings=replace(SETTINGS, memory_gb=TINY_GB))
+    with pytest.raises(LimitError, match="--memory"):
+        RouteMap(cut.search)
+
+
+@pytest.mark.parametrize("memory_gb", [0.0, -1.0, float("nan")])
+def test_no_memory_is_refused(memory_gb: float) -> None:
+    with pytest.raises(InputError, match="memory"):
+        Settings(memory_gb=memory_gb)
