@@ -14,16 +14,24 @@ Job: TypeAlias = Callable[[], object]
 
 @dataclass(frozen=True, slots=True)
 class Times:
-    """Medians over several runs.
+    """Times of a job.
 
     Attributes:
         clock_s: On the clock.
-        cores_s: Of all cores together, in this process and the ones it has started; they tell
-            more on a machine that has other things to do.
+        cores_s: Of all cores together, in this process and the ones it has started that have
+            ended; they tell more on a machine that has other things to do.
     """
 
     clock_s: float
     cores_s: float
+
+    def __add__(self, other: "Times") -> "Times":
+        """Times of both jobs, one after the other."""
+        return Times(self.clock_s + other.clock_s, self.cores_s + other.cores_s)
+
+    def __mul__(self, factor: float) -> "Times":
+        """Times of so many such jobs."""
+        return Times(self.clock_s * factor, self.cores_s * factor)
 
 
 def timed(job: Job, n_runs: int) -> Times:
@@ -38,15 +46,21 @@ def timed(job: Job, n_runs: int) -> Times:
 
 def timed_once(job: Job) -> Times:
     """Times of one run."""
-    cores_before_s, begin_s = _cores_used_s(), time.perf_counter()
+    begin = now()
     job()
-    return Times(time.perf_counter() - begin_s, _cores_used_s() - cores_before_s)
+    return since(begin)
 
 
-def _cores_used_s() -> float:
-    """Processor time so far, of all threads and of the processes that have ended."""
+def now() -> Times:
+    """Times so far, to be counted from."""
     used = os.times()
-    return used.user + used.system + used.children_user + used.children_system
+    ended_children_s = used.children_user + used.children_system
+    return Times(time.perf_counter(), time.process_time() + ended_children_s)
+
+
+def since(begin: Times) -> Times:
+    """Times from then to now."""
+    return now() + begin * -1
 
 
 def peak_mb() -> float:

@@ -3,14 +3,13 @@
 import itertools
 import math
 import statistics
-import time
 from collections import deque
 from collections.abc import Callable
 from typing import Final
 
 import numpy as np
 
-from benchmarks.clock import timed_once
+from benchmarks.clock import Times, now, since, timed_once
 from benchmarks.kdtree_loop import KdTreeLoop, Node
 from benchmarks.question import ROBOT, Contender, Figures, Question
 from satAOI_geo.aoi import area
@@ -27,9 +26,9 @@ def paper(program: type[KdTreeLoop]) -> Contender:
 
     def contender(question: Question) -> Figures:
         images = question.images
-        begin_s = time.perf_counter()
+        begin = now()
         loop = program(images.occupied, question.lattice, ROBOT)
-        built_s = time.perf_counter() - begin_s
+        built = since(begin)
         nodes = drawn(images.reached, question.n_sampled)
         troweled: set[int] = set()
 
@@ -37,8 +36,8 @@ def paper(program: type[KdTreeLoop]) -> Contender:
             for node in nodes:
                 loop.trowel(node, troweled)
 
-        trowel_s = timed_once(trowel).clock_s / len(nodes) * int(images.reached.sum())
-        return extrapolated(question, loop.fits, built_s + trowel_s)
+        n_times = int(images.reached.sum()) / len(nodes)
+        return extrapolated(question, loop.fits, built + timed_once(trowel) * n_times)
 
     return contender
 
@@ -47,8 +46,8 @@ def reference(question: Question) -> Figures:
     """The exact reference of this project."""
     lattice, reached = question.lattice, question.images.reached
     fits = ReferenceLoop(question.plan, lattice).fits
-    area_s = timed_once(lambda: area(Nodes.of(reached), lattice, ROBOT.disc_radius_mm)).clock_s
-    return extrapolated(question, fits, area_s)
+    troweled = timed_once(lambda: area(Nodes.of(reached), lattice, ROBOT.disc_radius_mm))
+    return extrapolated(question, fits, troweled)
 
 
 class ReferenceLoop:
@@ -82,34 +81,35 @@ class ReferenceLoop:
         )
 
 
-def extrapolated(question: Question, fits: Callable[[Node], bool], rest_s: float) -> Figures:
+def extrapolated(question: Question, fits: Callable[[Node], bool], rest: Times) -> Figures:
     """What a search that tries node after node would take, from some of its nodes.
 
     Args:
         question: What is asked.
         fits: Whether the contender finds a free pose at a node.
-        rest_s: What it needs besides the search.
+        rest: What it needs besides the search.
     """
     images = question.images
     tried = images.tried()
-    each_s, n_wrongly_free, n_wrongly_blocked = [], 0, 0
+    each: list[Times] = []
+    n_wrongly_free = n_wrongly_blocked = 0
     for node in drawn(tried, question.n_sampled):
-        begin_s = time.perf_counter()
+        begin = now()
         free = fits(node)
-        each_s.append(time.perf_counter() - begin_s)
+        each.append(since(begin))
         n_wrongly_free += free and not images.free[node]
         n_wrongly_blocked += not free and bool(images.free[node])
     # the search itself, with answers that cost nothing
     start = drawn(images.reached, 1)[0]
-    walk_s = timed_once(lambda: flooded(start, lambda node: bool(images.free[node]))).clock_s
-    n_tried = int(tried.sum())
-    clock_s = statistics.mean(each_s) * n_tried + walk_s + rest_s
+    walk = timed_once(lambda: flooded(start, lambda node: bool(images.free[node])))
+    n_times = int(tried.sum()) / len(each)
+    times = sum(each, start=Times(0.0, 0.0)) * n_times + walk + rest
+    deviation_s = statistics.stdev(one.clock_s for one in each)
     return Figures(
-        clock_s=clock_s,
-        error_s=n_tried * statistics.stdev(each_s) / math.sqrt(len(each_s)),
-        # one thread that never waits
-        cores_s=clock_s,
-        n_nodes=len(each_s),
+        clock_s=times.clock_s,
+        error_s=n_times * deviation_s * math.sqrt(len(each)),
+        cores_s=times.cores_s,
+        n_nodes=len(each),
         n_wrongly_free=n_wrongly_free,
         n_wrongly_blocked=n_wrongly_blocked,
     )
