@@ -43,7 +43,9 @@ DRAWINGS = {
         {"units": "m"}, "the header says inch", (600, 640), frozenset({"several-plans"})
     ),
     "d03": Expected({}, "", (250, 300), frozenset({"floor-inferred"})),
-    "d04": Expected({"units": "in"}, "the header says mm", (200, 215)),
+    "d04": Expected(
+        {"units": "in"}, "the header says mm", (200, 215), frozenset({"window-on-door-layer"})
+    ),
     "d05": Expected({}, "", (1000, 1100), frozenset({"unit-estimated"})),
     "d06": Expected({"units": "m"}, "the header says mm", (350, 450), frozenset({"floor-guessed"})),
     "d07": Expected({"units": "mm"}, "the header says inch", (5, 10), frozenset({"floor-guessed"})),

@@ -21,7 +21,7 @@ from shapely.geometry import Point as Spot
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Arc, Line, Path
-from satAOI_adapters.dxf_read.entities import Feature
+from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.linework import PARALLEL
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray

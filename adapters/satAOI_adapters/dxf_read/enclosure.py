@@ -17,8 +17,8 @@ from scipy.spatial import Delaunay
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from satAOI_adapters.dxf_read.entities import LOCAL_DIGITS
 from satAOI_adapters.dxf_read.linework import WALL_MM
+from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
 from satAOI_adapters.dxf_read.shapes import SAME_MM, GeometryArray, is_thin, rounded, tidy
 from satAOI_geo.plan import FloatArray, Region, polygons_in
 

@@ -15,7 +15,7 @@ from ezdxf.entities import DXFEntity
 from shapely.geometry import LineString
 
 from satAOI_adapters.dxf_read.curves import Arc, Line, Path
-from satAOI_adapters.dxf_read.entities import Feature
+from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.layers import Meaning
 from satAOI_geo.plan import FloatArray
 from satAOI_geo.units import MM_PER_UNIT

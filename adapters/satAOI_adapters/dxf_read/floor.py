@@ -10,7 +10,7 @@ from shapely.geometry import LineString, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.enclosure import OPENING_MM, enclosed
-from satAOI_adapters.dxf_read.entities import Feature
+from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.linework import Network, network
 from satAOI_adapters.dxf_read.obstacles import outlines_of
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM

@@ -9,7 +9,7 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from satAOI_adapters.dxf_read.curves import Path
-from satAOI_adapters.dxf_read.entities import Feature
+from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.linework import (
     WALL_MM,
     Network,

@@ -141,19 +141,33 @@ def _loaded(
     )
 
 
+class _Ear(logging.Handler):
+    """A handler that keeps what is said.
+
+    Attributes:
+        said: The messages, in order.
+    """
+
+    def __init__(self, level: int) -> None:
+        super().__init__(level)
+        self.said: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Keep a message."""
+        self.said.append(record.getMessage())
+
+
 @contextmanager
 def _heard() -> Iterator[list[str]]:
     """What ezdxf logs as a warning or worse, kept as data and off the screen."""
-    said: list[str] = []
-    handler = logging.Handler(logging.WARNING)
-    handler.emit = lambda record: said.append(record.getMessage())  # type: ignore[method-assign]
+    ear = _Ear(logging.WARNING)
     logger = logging.getLogger("ezdxf")
     propagates, logger.propagate = logger.propagate, False
-    logger.addHandler(handler)
+    logger.addHandler(ear)
     try:
-        yield said
+        yield ear.said
     finally:
-        logger.removeHandler(handler)
+        logger.removeHandler(ear)
         logger.propagate = propagates
 
 

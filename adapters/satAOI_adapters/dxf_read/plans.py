@@ -15,7 +15,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Arc, Point
-from satAOI_adapters.dxf_read.entities import Feature
+from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.shapes import GeometryArray, is_thin
 from satAOI_adapters.layers import KINDS, Meaning
 from satAOI_geo.errors import InputError

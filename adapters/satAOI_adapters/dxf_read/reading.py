@@ -21,10 +21,11 @@ from satAOI_adapters.dxf_read.doors import (
     spans,
     without_swings,
 )
-from satAOI_adapters.dxf_read.entities import LOCAL_DIGITS, Feature
+from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.floor import floor_of
 from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
 from satAOI_adapters.dxf_read.options import ReadOptions
+from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
 from satAOI_adapters.dxf_read.plans import Drawn, chosen, clusters, within
 from satAOI_adapters.dxf_read.shapes import middle_line
 from satAOI_adapters.dxf_read.survey import Survey, survey

@@ -16,7 +16,7 @@ from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import SAGITTA_MM, Arc, Line, Path, Point, Spline
-from satAOI_adapters.dxf_read.entities import LOCAL_DIGITS
+from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
 from satAOI_geo.plan import Circle, FloatArray, Region, Shape, as_region, polygons_in
 
 GeometryArray: TypeAlias = npt.NDArray[np.object_]
@@ -160,7 +160,7 @@ def middle_lines(paths: Iterable[Path]) -> GeometryArray:
 
 
 def rounded(polygons: Iterable[Polygon]) -> list[Polygon]:
-    """Polygons with corners to `entities.LOCAL_DIGITS`, still valid: hairs may fall off."""
+    """Polygons with corners to `placement.LOCAL_DIGITS`, still valid: hairs may fall off."""
     exact = np.array(list(polygons), dtype=object)
     neat = _round_corners(exact)
     found: list[Polygon] = []
@@ -170,12 +170,12 @@ def rounded(polygons: Iterable[Polygon]) -> list[Polygon]:
 
 
 def tidy(region: BaseGeometry) -> Region:
-    """A region on the grid of `entities.LOCAL_DIGITS`, valid there."""
+    """A region on the grid of `placement.LOCAL_DIGITS`, valid there."""
     return as_region(_round_corners(shapely.set_precision(region, SAME_MM)))
 
 
 def _round_corners(region: GeometryT) -> GeometryT:
-    """A geometry, or each of an array of them, with corners to `entities.LOCAL_DIGITS`."""
+    """A geometry, or each of an array of them, with corners to `placement.LOCAL_DIGITS`."""
     neat: GeometryT = shapely.transform(region, lambda xy: np.round(xy, LOCAL_DIGITS) + 0.0)
     return neat
 

@@ -12,9 +12,10 @@ from ezdxf.document import Drawing
 
 from satAOI_adapters.dxf_read import limits
 from satAOI_adapters.dxf_read.curves import Point
-from satAOI_adapters.dxf_read.entities import DRAWN, Feature, features_of
+from satAOI_adapters.dxf_read.entities import DRAWN, features_of
 from satAOI_adapters.dxf_read.estimate import estimate
 from satAOI_adapters.dxf_read.expand import Expansion, expand
+from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.meaning import LISTED, Seen, with_meaning
 from satAOI_adapters.dxf_read.opening import open_drawing
 from satAOI_adapters.dxf_read.options import ReadOptions

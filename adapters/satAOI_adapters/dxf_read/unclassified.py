@@ -8,7 +8,7 @@ import shapely
 from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
-from satAOI_adapters.dxf_read.entities import Feature
+from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.obstacles import Standing, area_of
 from satAOI_adapters.dxf_read.shapes import is_thin, shapes_of
 from satAOI_geo.plan import Finding, Kind, Obstacle, Region, polygons_in

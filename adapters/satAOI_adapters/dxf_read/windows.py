@@ -28,7 +28,7 @@ from satAOI_adapters.dxf_read.doors import (
     may_be_swing,
     spanning,
 )
-from satAOI_adapters.dxf_read.entities import Feature
+from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.linework import PARALLEL
 from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray
 
