@@ -322,6 +322,8 @@ def answer(
     mark = None if options["start"] is None else mark_of(options["start"], plan)
     if not (compiled or quiet):
         say_note("first run of this version: compiling takes some seconds, once")
+    if not compiled:
+        kernel_cache.compile_beside()
     with progress(quiet=quiet) as told:
         return area_of_interest(plan, robot, settings, start=mark, progress=told, crew=crew)
 

@@ -220,7 +220,7 @@ def _block(
     left = np.empty(n_rows)
     right = np.empty(n_rows)
     barred = [0 for _ in range(0)]
-    part_top = part_y.max()
+    part_top = part_y[_extremes(part_y)[1]]
     for piece in range(radius.size):
         begin, end = first[piece], first[piece + 1]
         r = reach + radius[piece]
@@ -282,7 +282,7 @@ def _bar_steps_up(
         n_columns: Columns of the lattice.
     """
     x, y = corners
-    leftmost, rightmost = x.argmin(), x.argmax()
+    leftmost, rightmost = _extremes(x)
     leftmost_row, rightmost_row = math.floor(y[leftmost]), math.floor(y[rightmost])
     last_row = first_row + left.size - 1
     for row in range(max(first_row, lowest - 1), min(last_row - 1, highest) + 1):
@@ -313,6 +313,18 @@ def _bar_steps_up(
             else:
                 _append(barred, 1, iy, ix)
             ix += 1
+
+
+@numba.njit(nogil=True, cache=True)
+def _extremes(values: FloatArray) -> tuple[int, int]:
+    """Where the least and the greatest value are; numpy's own takes a second to compile."""
+    least = greatest = 0
+    for k in range(1, values.size):
+        if values[k] < values[least]:
+            least = k
+        if values[k] > values[greatest]:
+            greatest = k
+    return least, greatest
 
 
 @numba.njit(nogil=True, cache=True)

@@ -275,9 +275,17 @@ def _holding(
     """Write the run that holds each pose at a node, or -1."""
     for a1 in range(found.shape[0]):
         for swing in range(found.shape[1]):
-            low, high = first[a1, swing, iy], first[a1, swing, iy + 1]
-            run = low + np.searchsorted(begin[low:high], ix, side="right") - 1
-            found[a1, swing] = run if run >= low and ix <= end[run] else -1
+            # the first run that does not end before the column; bisected by hand, since numpy's
+            # own takes a second to compile
+            run, beyond = first[a1, swing, iy], first[a1, swing, iy + 1]
+            last = beyond
+            while run < beyond:
+                middle = (run + beyond) // 2
+                if end[middle] < ix:
+                    run = middle + 1
+                else:
+                    beyond = middle
+            found[a1, swing] = run if run < last and begin[run] <= ix else -1
 
 
 @numba.njit(nogil=True, cache=True)

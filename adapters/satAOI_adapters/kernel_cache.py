@@ -1,9 +1,11 @@
 """Where compiled kernels are kept between runs: one folder a user and state of the program."""
 
 import atexit
+import contextlib
 import hashlib
 import os
 import shutil
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -26,6 +28,44 @@ def prepare() -> bool:
     python = f"py{sys.version_info.major}{sys.version_info.minor}"
     indices = Path(os.environ[VARIABLE]).rglob("*.nbi")
     return any(python in index.name for index in indices)
+
+
+def compile_beside() -> None:
+    """Compile the kernels that come last in a process beside this one, which compiles the first.
+
+    Numba compiles one kernel at a time in a process; what another one has compiled it loads.
+    """
+    command = [sys.executable, "-c", f"from {__name__} import compile_last; compile_last()"]
+    silent = subprocess.DEVNULL
+    paths = os.pathsep.join(filter(None, sys.path))
+    with contextlib.suppress(OSError):
+        subprocess.Popen(  # noqa: S603  this Python and this module
+            command,
+            stdin=silent,
+            stdout=silent,
+            stderr=silent,
+            env=os.environ | {"PYTHONPATH": paths},
+        )
+
+
+def compile_last() -> None:
+    """Compile the kernels of runs and of areas, on the smallest of them."""
+    import numpy as np
+
+    from satAOI_geo.discs import boundary, covered_cells
+    from satAOI_geo.nodes import Nodes
+    from satAOI_geo.runs import Meeting, Runs, paint, roots, rows_of, unite
+
+    reached = Nodes.of(np.ones((3, 3), dtype=np.bool_))
+    runs = Runs.joined([[rows_of(reached)]])
+    parents = np.arange(3, dtype=np.int32)
+    meeting = Meeting.upwards(runs, (0, 0))
+    meeting.are_apart(parents, reached.words)
+    unite(parents, meeting.links(reached.words))
+    paint(reached.words, roots(parents), runs.begin, runs.end)
+    boundary(reached, 1.5)
+    covered_cells(reached, 1.5)
+    runs.holding(1, 1)
 
 
 def _own_folder() -> Path:
