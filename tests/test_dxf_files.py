@@ -1,5 +1,7 @@
 """Files as they come: of other kinds, damaged, in other encodings."""
 
+import contextlib
+import gc
 import io
 import math
 from pathlib import Path
@@ -232,6 +234,13 @@ def test_binary_drawing_reads_like_the_text(tmp_path: Path) -> None:
     as_binary = read(path, ReadOptions())
     assert as_binary.floor == as_text.floor
     assert as_binary.obstacles == as_text.obstacles
+
+
+@pytest.mark.parametrize("content", ["", text_of(drawing())], ids=["nothing", "a plan"])
+def test_garbage_is_collected_again_after_reading(content: str, tmp_path: Path) -> None:
+    with contextlib.suppress(UnreadableError):
+        read_text(content, tmp_path)
+    assert gc.isenabled()
 
 
 def test_reading_says_nothing_on_the_screen(

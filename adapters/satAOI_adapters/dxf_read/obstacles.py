@@ -5,6 +5,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
@@ -124,21 +125,22 @@ def _loops(layer: str, paths: Sequence[tuple[Path, Feature]], kind: Kind, terms:
     """Loose lines of one layer: what they enclose is solid, the rest are lines."""
     lines = middle_lines(path for path, _ in paths)
     joined = network(lines, terms.gap_mm)
-    faces = shapely.union_all(joined.faces())
-    shapely.prepare(faces)
+    faces = joined.faces()
+    tree = shapely.STRtree(faces)
     # curves bulge out of the polygons that their chords enclose
-    bulges = [s for path, _ in paths for s in slivers(path) if faces.intersects(s)]
-    enclosed = rounded(polygons_in([shapely.union_all([faces, *bulges])]))
+    curves = [s for path, _ in paths for s in slivers(path)]
+    bulges = [s for s in curves if tree.query(s, predicate="intersects").size]
+    enclosed = rounded(polygons_in([shapely.union_all([*faces, *bulges])]))
     nearest = shapely.STRtree(lines).nearest(enclosed)
     obstacles = [
         Obstacle(Polygon(face.exterior), kind, layer, paths[i][1].placed.handle)
         for face, i in zip(enclosed, nearest, strict=True)
     ]
-    grown = shapely.union_all(enclosed).buffer(COVERED_MM)
-    shapely.prepare(grown)
-    for (path, feature), is_covered in zip(paths, shapely.covers(grown, lines), strict=True):
-        if not is_covered:
-            obstacles.extend(_obstacles(traces(path), kind, feature))
+    grown = shapely.STRtree(shapely.buffer(enclosed, COVERED_MM))
+    covered, _ = grown.query(lines, predicate="covered_by")
+    for i in np.setdiff1d(np.arange(len(lines)), covered):
+        path, feature = paths[i]
+        obstacles.extend(_obstacles(traces(path), kind, feature))
     return Standing(tuple(obstacles), _gaps(layer, joined, terms))
 
 

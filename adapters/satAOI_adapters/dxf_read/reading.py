@@ -14,6 +14,7 @@ from ezdxf.entities import Point as PointEntity
 from ezdxf.math import Vec3
 from shapely.geometry import LineString, box
 
+from satAOI_adapters.dxf_read.collector import collector_at_rest
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.doors import (
     partition_findings,
@@ -67,7 +68,8 @@ def read(path: Path, options: ReadOptions) -> FloorPlan:
         DrawingError: If the drawing cannot be used as it is.
         LimitError: If it asks for more than `limits` allows.
     """
-    return plan_of(survey(path, options), options)
+    with collector_at_rest():
+        return plan_of(survey(path, options), options)
 
 
 def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
