@@ -31,6 +31,15 @@ def test_the_file_holds_the_json(tmp_path: Path) -> None:
     assert file.read_text(encoding="utf-8") == json_of(REPORT)
 
 
+def test_a_name_that_is_no_text_is_written_all_the_same(tmp_path: Path) -> None:
+    # the bytes of a name in GBK, as Python sees them where names are in UTF-8
+    path = b"\xc6\xbd\xc3\xe6.dxf".decode("utf-8", "surrogateescape")
+    report = replace(REPORT, input=replace(REPORT.input, path=path))
+    report_write.write(tmp_path / "report.json", report)
+    read = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
+    assert read["input"]["path"].endswith(".dxf")
+
+
 def test_a_report_is_never_written_over_the_plan(tmp_path: Path) -> None:
     plan = tmp_path / "plan.dxf"
     plan.write_bytes(b"the plan")

@@ -1,14 +1,19 @@
 """Files that appear whole or not at all."""
 
 import contextlib
+import json
 import os
 import secrets
 import shutil
 from collections.abc import Iterable, Iterator
+from dataclasses import asdict
 from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 from satAOI_geo.errors import InputError
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 
 @contextlib.contextmanager
@@ -64,12 +69,11 @@ def _same_file(one: Path, other: Path) -> bool:
     return one.exists() and other.exists() and one.samefile(other)
 
 
-def json_of(figures: object) -> str:
-    """A dataclass as JSON, key by key: the same figures give the same text.
+def json_of(figures: "DataclassInstance") -> str:
+    r"""A dataclass as JSON, key by key: the same figures give the same text.
 
-    Floats stand with all their digits, so that reading them back gives the same numbers. What
-    builds the schema is imported here, since most runs write none.
+    Floats stand with all their digits, so that reading them back gives the same numbers. Bytes in
+    a file's name that are no text are written as they are in Python, `\udc80` and so on.
     """
-    from pydantic import TypeAdapter
-
-    return TypeAdapter(type(figures)).dump_json(figures, indent=2).decode() + "\n"
+    text = json.dumps(asdict(figures), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    return text.encode("utf-8", "backslashreplace").decode()
