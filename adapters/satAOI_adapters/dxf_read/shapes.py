@@ -66,6 +66,9 @@ def solid(path: Path) -> list[Polygon]:
 
 def is_wide(path: Path, width_mm: float) -> bool:
     """Whether a disc of this diameter surely fits into what a closed path encloses."""
+    x_mm, y_mm = zip(*path.rough(), strict=True)
+    if min(max(x_mm) - min(x_mm), max(y_mm) - min(y_mm)) <= width_mm:
+        return False
     return not is_thin(_by_chords(path), width_mm + 4 * SAGITTA_MM)
 
 
