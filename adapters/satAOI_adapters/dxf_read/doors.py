@@ -13,18 +13,16 @@ from typing import Final
 
 import numpy as np
 import shapely
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 from shapely.geometry import LineString
 from shapely.geometry import Point as Spot
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Arc, Line, Path
 from satAOI_adapters.dxf_read.features import Feature
+from satAOI_adapters.dxf_read.groups import linked, tree_of
 from satAOI_adapters.dxf_read.linework import PARALLEL
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
-from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray
+from satAOI_geo.plan import BoolArray, Finding, FloatArray
 
 JAMB_MM: Final = 300.0
 """A line that ends this close to walls on both sides spans the opening between them."""
@@ -115,7 +113,7 @@ def without_swings(features: Sequence[Feature]) -> tuple[list[Feature], int]:
     ]
     if not arcs or not lines:
         return list(features), 0
-    tree = cKDTree([end for line in lines for end in (line.start, line.end)])
+    tree = tree_of([end for line in lines for end in (line.start, line.end)])
     n_doors = 0
     doors_of: defaultdict[int, list[Arc]] = defaultdict(list)
     for arc in arcs:
@@ -212,18 +210,11 @@ def spanning(
     return at_walls
 
 
-def linked(pairs: IntArray, n: int) -> IntArray:
-    """The number of the group that each of n things is in, linked by pairs, shape (pairs, 2)."""
-    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    _, group = connected_components(links, directed=False)
-    return np.asarray(group, dtype=np.int64)
-
-
 def _in_corners(lines: Sequence[LineString], is_long: BoolArray) -> BoolArray:
     """Which lines are in a chain, joined end to end, with long lines in two directions."""
     n = len(lines)
     ends = [line.coords[k] for line in lines for k in (0, -1)]
-    chain = linked(cKDTree(ends).query_pairs(CLOSE_GAPS_MM, output_type="ndarray") // 2, n)
+    chain = linked(tree_of(ends).query_pairs(CLOSE_GAPS_MM, output_type="ndarray") // 2, n)
     along = directions(lines)
     turns = np.zeros(n, dtype=bool)
     for k in np.unique(chain[is_long]):

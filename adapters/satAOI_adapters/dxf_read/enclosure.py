@@ -11,16 +11,14 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 import shapely
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import Delaunay
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from satAOI_adapters.dxf_read.groups import linked
 from satAOI_adapters.dxf_read.linework import WALL_MM
 from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
 from satAOI_adapters.dxf_read.shapes import SAME_MM, GeometryArray, is_thin, rounded, tidy
-from satAOI_geo.plan import FloatArray, Region, polygons_in
+from satAOI_geo.plan import BoolArray, FloatArray, Region, polygons_in
 
 OPENING_MM: Final = 2500.0
 """Widest opening in the outer walls that does not let the floor leak out: a double door."""
@@ -75,6 +73,8 @@ class Mesh:
         Without these the outermost points would lie on the rim of the triangulation, where those
         in one line count or do not as roundings have it.
         """
+        from scipy.spatial import Delaunay
+
         left, bottom = points.min(axis=0) - FAR_MM
         right, top = points.max(axis=0) + FAR_MM
         corners_mm = ((left, bottom), (right, bottom), (right, top), (left, top))
@@ -89,7 +89,7 @@ class Mesh:
         centres = shapely.STRtree(shapely.points((first + second + third) / 3))
         return cls(points, delaunay.neighbors, sides, areas_mm2, centres)
 
-    def outside(self, opening_mm: float) -> npt.NDArray[np.bool_]:
+    def outside(self, opening_mm: float) -> BoolArray:
         """The triangles that are reached from far away over sides longer than an opening."""
         start, end = self.points[self.sides[..., 0]], self.points[self.sides[..., 1]]
         lengths_mm = np.hypot(*np.moveaxis(end - start, -1, 0))
@@ -100,19 +100,16 @@ class Mesh:
         n = len(self.sides)
         beyond = self.neighbours[triangles, corners]
         beyond = np.where(beyond < 0, n, beyond)
-        links = coo_array((np.ones(len(beyond)), (triangles, beyond)), shape=(n + 1, n + 1))
-        _, component = connected_components(links, directed=False)
-        return np.asarray(component[:n] == component[n])
+        group = linked(np.column_stack((triangles, beyond)), n + 1)
+        return np.asarray(group[:n] == group[n])
 
-    def rim(self, outside: npt.NDArray[np.bool_]) -> GeometryArray:
+    def rim(self, outside: BoolArray) -> GeometryArray:
         """The sides between triangles outside and inside, as lines."""
         beyond_is_outside = (self.neighbours < 0) | outside[self.neighbours]
         triangles, corners = np.nonzero(~outside[:, np.newaxis] & beyond_is_outside)
         return np.asarray(shapely.linestrings(self.points[self.sides[triangles, corners]]))
 
-    def dry_share(
-        self, faces: Sequence[Polygon], outside: npt.NDArray[np.bool_]
-    ) -> npt.NDArray[np.float64]:
+    def dry_share(self, faces: Sequence[Polygon], outside: BoolArray) -> npt.NDArray[np.float64]:
         """Which share of each face stays dry, judged by the triangles centred in it."""
         owners, triangles = self.centres.query(faces, predicate="contains")
         n = len(faces)
@@ -142,8 +139,14 @@ def enclosed(bounds: Sequence[BaseGeometry]) -> Region:
         return MultiPolygon()
     mesh = Mesh.over(samples)
     found: BaseGeometry = Polygon()
+    flooded: BoolArray | None = None
     for opening_mm in OPENING_STEPS_MM:
-        faces = _dry_faces(mesh, walls, found, opening_mm)
+        outside = mesh.outside(opening_mm)
+        if flooded is not None and (outside == flooded).all():
+            # no opening lies between this width and the one before
+            continue
+        flooded = outside
+        faces = _dry_faces(mesh, walls, found, outside)
         if faces:
             found = shapely.union_all([found, *faces])
             # what lies within is settled
@@ -169,13 +172,12 @@ def _samples(walls: BaseGeometry) -> FloatArray:
 
 
 def _dry_faces(
-    mesh: Mesh, walls: BaseGeometry, known: BaseGeometry, opening_mm: float
+    mesh: Mesh, walls: BaseGeometry, known: BaseGeometry, outside: BoolArray
 ) -> list[Polygon]:
-    """The faces between walls that openings of this width do not connect with the outside.
+    """The faces between walls that lie mostly in triangles which stay dry.
 
     Those within what is known to be enclosed already are of no interest.
     """
-    outside = mesh.outside(opening_mm)
     rim = mesh.rim(outside)
     shapely.prepare(walls)
     middles = shapely.line_interpolate_point(rim, 0.5, normalized=True)

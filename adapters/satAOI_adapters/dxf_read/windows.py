@@ -23,12 +23,12 @@ from satAOI_adapters.dxf_read.doors import (
     LEAF_SLACK_MM,
     as_lines,
     directions,
-    linked,
     loose_pieces,
     may_be_swing,
     spanning,
 )
 from satAOI_adapters.dxf_read.features import Feature
+from satAOI_adapters.dxf_read.groups import linked
 from satAOI_adapters.dxf_read.linework import PARALLEL
 from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray
 
