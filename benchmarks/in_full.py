@@ -19,7 +19,8 @@ from satAOI_geo.nodes import Nodes
 from satAOI_geo.pipeline import area_of_interest
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.progress import Stopwatch
-from satAOI_geo.search import DEFAULTS, search
+from satAOI_geo.search import search
+from satAOI_geo.settings import DEFAULTS
 
 
 def in_full(job: Callable[[Question], BoolArray]) -> Contender:

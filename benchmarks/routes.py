@@ -17,7 +17,8 @@ from satAOI_geo.collision import Collider
 from satAOI_geo.progress import Stopwatch
 from satAOI_geo.robot import PROTOTYPE, Pose
 from satAOI_geo.route import RouteMap
-from satAOI_geo.search import DEFAULTS, search
+from satAOI_geo.search import search
+from satAOI_geo.settings import DEFAULTS
 
 SAMPLE: Final = Path(__file__).parents[1] / "samples" / "hall_complex.dxf"
 

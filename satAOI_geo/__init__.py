@@ -37,7 +37,8 @@ if TYPE_CHECKING:
     from satAOI_geo.report import Report
     from satAOI_geo.robot import ROBOTS, Pose, Robot
     from satAOI_geo.route import Route, RouteMap
-    from satAOI_geo.search import Search, Settings
+    from satAOI_geo.search import Search
+    from satAOI_geo.settings import Settings
     from satAOI_geo.start import Start, StartMark
     from satAOI_geo.units import MM_PER_UNIT
     from satAOI_geo.zones import SetDown, Zone
@@ -92,7 +93,8 @@ _NAMES_OF_MODULE = {
     "plan": {"FloorPlan", "Obstacle", "Kind", "Circle", "Finding", "Frame", "Source"},
     "robot": {"Robot", "Pose", "ROBOTS"},
     "lattice": {"Lattice"},
-    "search": {"Search", "Settings"},
+    "search": {"Search"},
+    "settings": {"Settings"},
     "start": {"Start", "StartMark"},
     "zones": {"Zone", "SetDown"},
     "reasons": {"Patch", "Reason"},

@@ -70,7 +70,7 @@ if TYPE_CHECKING:
     from satAOI_geo.plan import FloorPlan
     from satAOI_geo.progress import Progress
     from satAOI_geo.route import Route
-    from satAOI_geo.search import Settings
+    from satAOI_geo.settings import Settings
     from satAOI_geo.start import StartMark
 
 DONE: Final = 0
@@ -312,13 +312,14 @@ def answer(
     from satAOI_adapters.terminal import progress, say_note
 
     compiled = kernel_cache.prepare()
-    from satAOI_geo.pipeline import area_of_interest
-
     # what is cheap to refuse comes first
     robot = robot_from(options["robot"])
     settings = settings_of(options, exact_outline=exact_outline)
     with progress(quiet=quiet) as told:
         plan = read(path, options, progress=told)
+    # numba, which is slow to load, only once there is a plan
+    from satAOI_geo.pipeline import area_of_interest
+
     mark = None if options["start"] is None else mark_of(options["start"], plan)
     if not (compiled or quiet):
         say_note("first run of this version: compiling takes some seconds, once")
@@ -346,7 +347,7 @@ def settings_of(question: Question, *, exact_outline: bool) -> "Settings":
     Raises:
         InputError: If one is out of range.
     """
-    from satAOI_geo.search import Settings
+    from satAOI_geo.settings import Settings
 
     align_deg = question["align"]
     return Settings(

@@ -11,7 +11,8 @@ from satAOI_geo.progress import Progress, Stopwatch
 from satAOI_geo.reasons import Patch, Reason, fitting_nodes, unreached
 from satAOI_geo.report import Report, report_of
 from satAOI_geo.robot import PROTOTYPE, Robot
-from satAOI_geo.search import DEFAULTS, Search, Settings, search
+from satAOI_geo.search import Search, search
+from satAOI_geo.settings import DEFAULTS, Settings
 from satAOI_geo.start import StartMark
 from satAOI_geo.zones import SetDown, Zone, set_downs, zones
 

@@ -11,7 +11,7 @@ from shapely.geometry import LineString, Polygon, box
 from satAOI_geo.aoi import Aoi, Loop, Outline
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import Circle, FloorPlan, Frame, Kind, Obstacle, Source
-from satAOI_geo.search import Settings
+from satAOI_geo.settings import Settings
 
 QUARTER_BULGE = np.tan(np.pi / 8)
 

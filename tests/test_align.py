@@ -10,7 +10,7 @@ from shapely.geometry import LineString, box
 from satAOI_geo.align import wall_direction_rad
 from satAOI_geo.pipeline import area_of_interest
 from satAOI_geo.plan import Circle, FloorPlan, Kind, Obstacle
-from satAOI_geo.search import Settings
+from satAOI_geo.settings import Settings
 from satAOI_geo.start import StartMark
 from tests import plans
 

@@ -13,7 +13,7 @@ from satAOI_geo.bands import BandTask, Explored, Outcome
 from satAOI_geo.errors import InputError, LimitError
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.route import RouteMap
-from satAOI_geo.search import Settings
+from satAOI_geo.settings import Settings
 from tests import cluster_jobs as jobs
 from tests import plans
 

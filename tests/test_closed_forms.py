@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from satAOI_geo.pipeline import Result, area_of_interest
-from satAOI_geo.search import Settings
+from satAOI_geo.settings import Settings
 from satAOI_geo.units import MM2_PER_M2
 from tests import plans
 

@@ -22,7 +22,7 @@ from shapely.geometry.base import BaseGeometry
 from satAOI_adapters.dxf_read import ReadOptions, read
 from satAOI_geo.pipeline import area_of_interest
 from satAOI_geo.plan import FloorPlan, Kind
-from satAOI_geo.search import Settings
+from satAOI_geo.settings import Settings
 from tests.drawings import CM, INCH, MM, M
 
 SAMPLES = Path(__file__).parents[1] / "samples"

@@ -30,7 +30,7 @@ from satAOI_geo.errors import InputError, UnreadableError
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import Circle, FloorPlan, Frame, Kind, Obstacle
 from satAOI_geo.reasons import Patch
-from satAOI_geo.search import Settings
+from satAOI_geo.settings import Settings
 from tests import plans, results
 
 ROOT = Path(__file__).parents[1]

@@ -14,7 +14,7 @@ from satAOI_adapters import ifc_write, read_plan
 from satAOI_geo.errors import InputError, UnreadableError
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import FloatArray
-from satAOI_geo.search import Settings
+from satAOI_geo.settings import Settings
 from tests.ifc_models import Pen
 from tests.results import furnished_result
 from tests.test_ifc_read import plan_in

@@ -10,7 +10,7 @@ from satAOI_geo.explain import explain
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import FloorPlan, Kind, Obstacle
 from satAOI_geo.reasons import Patch, Reason
-from satAOI_geo.search import Settings
+from satAOI_geo.settings import Settings
 from satAOI_geo.start import StartMark
 from satAOI_geo.units import MM2_PER_M2
 from tests import plans

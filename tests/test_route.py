@@ -12,7 +12,8 @@ from satAOI_geo.errors import NoRouteError
 from satAOI_geo.progress import Stopwatch
 from satAOI_geo.robot import PROTOTYPE
 from satAOI_geo.route import RouteMap
-from satAOI_geo.search import Search, Settings, search
+from satAOI_geo.search import Search, search
+from satAOI_geo.settings import Settings
 from tests import plans
 
 SETTINGS = Settings(step_mm=20.0)

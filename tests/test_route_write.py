@@ -31,7 +31,7 @@ from satAOI_geo.plan import FloorPlan
 from satAOI_geo.reach import State
 from satAOI_geo.robot import PROTOTYPE, Pose
 from satAOI_geo.route import MoveKind, Route, RouteMap
-from satAOI_geo.search import Settings
+from satAOI_geo.settings import Settings
 from satAOI_geo.start import StartMark
 from tests import plans
 

@@ -9,7 +9,7 @@ from satAOI_geo.discs import covered_cells
 from satAOI_geo.errors import NothingFreeError, StartBlockedError
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import FloorPlan, Kind, Obstacle
-from satAOI_geo.search import Settings
+from satAOI_geo.settings import Settings
 from satAOI_geo.start import StartMark
 from satAOI_geo.zones import ZONE_MM2
 from tests import plans
