@@ -37,15 +37,10 @@ def compile_beside() -> None:
     """
     command = [sys.executable, "-c", f"from {__name__} import compile_last; compile_last()"]
     silent = subprocess.DEVNULL
-    paths = os.pathsep.join(filter(None, sys.path))
+    own = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     with contextlib.suppress(OSError):
-        subprocess.Popen(  # noqa: S603  this Python and this module
-            command,
-            stdin=silent,
-            stdout=silent,
-            stderr=silent,
-            env=os.environ | {"PYTHONPATH": paths},
-        )
+        # nobody waits for it: what it has not done in time is compiled here
+        subprocess.Popen(command, stdin=silent, stdout=silent, stderr=silent, env=own)  # noqa: S603
 
 
 def compile_last() -> None:
