@@ -117,11 +117,7 @@ def unreached(
         than a cell are gathered in one patch at the end.
     """
     rest = as_region(plan.free_region().difference(_region(aoi)))
-    covered = {
-        reason: as_region(_region(wider[reason]).buffer(-APART_MM * order))
-        for order, reason in enumerate(Reason)
-        if reason in wider
-    }
+    covered = {reason: _region(area) for reason, area in wider.items()}
     parts = polygons_in([rest])
     width_mm = NARROW_CELLS * lattice.step_mm
     broad = [_opened(part, width_mm) for part in parts]
@@ -150,9 +146,9 @@ def _split(
     """
     by_reason: dict[Reason, Region] = {}
     inside: Region = part
-    for reason, next_reason in pairwise(Reason):
+    for order, (reason, next_reason) in enumerate(pairwise(Reason), start=1):
         # each area holds the next: where one is met by rounding only, so are all after it
-        near = _clipped(covered[next_reason], part)
+        near = as_region(_clipped(covered[next_reason], part).buffer(-APART_MM * order))
         still = as_region(inside.intersection(near))
         if still.area < step_mm**2:
             by_reason[reason] = inside
