@@ -87,10 +87,7 @@ def search(
         engine, robot, lattice, memory_gb=settings.memory_gb, watch=watch, crew=crew
     )
     if not free.words.any():
-        raise NothingFreeError(
-            f"robot '{robot.name}' fits nowhere on this floor of {plan.floor.area / MM2_PER_M2:.2f}"
-            " m²; check the drawing's unit, the layers taken for obstacles, and the clearance"
-        )
+        raise _fits_nowhere(plan, robot)
     with watch.stage("reach"):
         disc = DiscComponents.of(free)
         pose = PoseComponents.of(lattice, bands)
@@ -110,3 +107,18 @@ def _engine(plan: FloorPlan, robot: Robot, lattice: Lattice, settings: Settings)
     if settings.engine == "reference":
         return Reference(Collider(plan, robot, settings.clearance_mm), lattice)
     return Intervals.of(plan, robot, lattice, settings.clearance_mm)
+
+
+def _fits_nowhere(plan: FloorPlan, robot: Robot) -> NothingFreeError:
+    """The error of a floor without any free pose, with the obstacle that takes most of it."""
+    areas_mm2 = [obstacle.region().intersection(plan.floor).area for obstacle in plan.obstacles]
+    largest = ""
+    if max(areas_mm2, default=0.0) > 0:
+        k = areas_mm2.index(max(areas_mm2))
+        label, area_m2 = plan.obstacles[k].label(), areas_mm2[k] / MM2_PER_M2
+        largest = f", of which {label} takes {area_m2:.2f} m²"
+    return NothingFreeError(
+        f"robot '{robot.name}' fits nowhere on this floor of {plan.floor.area / MM2_PER_M2:.2f} m²"
+        f"{largest}; check the unit, what is taken for obstacles, which 'inspect' tells, and the "
+        "clearance"
+    )

@@ -123,3 +123,13 @@ def test_start_whose_pose_is_blocked_names_what_the_pose_touches() -> None:
 def test_floor_that_the_robot_does_not_fit_on_is_an_error() -> None:
     with pytest.raises(NothingFreeError, match="fits nowhere"):
         area_of_interest(FloorPlan(box(0, 0, 1000, 1000)), settings=SETTINGS)
+
+
+def test_the_obstacle_that_takes_most_of_a_floor_without_free_poses_is_named() -> None:
+    block, post = box(500, 500, 3500, 3500), box(0, 0, 100, 100)
+    plan = FloorPlan(
+        box(0, 0, 4000, 4000),
+        (Obstacle(post, Kind.COLUMN, "C", "1E"), Obstacle(block, Kind.WALL, "ROOF", "1F")),
+    )
+    with pytest.raises(NothingFreeError, match=r"1F.*'ROOF' takes 9\.00 m²"):
+        area_of_interest(plan, settings=SETTINGS)
