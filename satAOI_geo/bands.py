@@ -150,8 +150,9 @@ def _cuts(lattice: Lattice, memory_gb: float, n_bands: int) -> Iterator[tuple[sl
     """Rows of each band, at least some number of bands, and how many of them are its own."""
     n_poses = lattice.n_directions * len(lattice.swings)
     row_bytes = n_poses * -(-lattice.n_columns // WORD_BITS) * WORD_BITS // 8
-    n_fitting = int(memory_gb * BYTES_PER_GB / (SPACES_AT_ONCE * row_bytes))
-    n_own = max(1, min(n_fitting, -(-lattice.n_rows // n_bands)))
+    # there may be no end of memory
+    n_fitting = min(memory_gb * BYTES_PER_GB / (SPACES_AT_ONCE * row_bytes), lattice.n_rows)
+    n_own = max(1, min(int(n_fitting), -(-lattice.n_rows // n_bands)))
     for begin in range(0, lattice.n_rows, n_own):
         end = min(begin + n_own, lattice.n_rows)
         yield slice(begin, min(end + 1, lattice.n_rows)), end - begin

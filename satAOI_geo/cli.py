@@ -289,11 +289,11 @@ def route_to(result: "Result", at: tuple[float, float]) -> "Route":
 @contextmanager
 def crew_of(options: Sharing) -> Iterator["Workers | None"]:
     """Those who share the search, for the time of a block; None where nobody is asked to."""
-    from satAOI_adapters.cluster import workers
-
     if options["workers"] is None and options["scheduler"] is None:
         yield None
         return
+    from satAOI_adapters.cluster import workers
+
     with workers(n_workers=options["workers"], scheduler=options["scheduler"]) as crew:
         yield crew
 

@@ -36,8 +36,7 @@ class FreeSpace:
 
     def is_free(self, iy: int, ix: int, a1: int, swing: int) -> bool:
         """Whether one pose is free at a node."""
-        word = int(self.words[a1, swing, iy, ix // WORD_BITS])
-        return bool(word >> int(ix) % WORD_BITS & 1)
+        return Nodes(self.words[a1, swing], self.lattice.n_columns).has(iy, ix)
 
     def free_nodes(self) -> Nodes:
         """Nodes at which some pose is free."""

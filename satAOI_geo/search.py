@@ -82,7 +82,8 @@ def search(
     lattice = Lattice.over(
         plan.floor.bounds, robot, step_mm=settings.step_mm, n_directions=settings.n_directions
     )
-    engine = _engine(plan, robot, lattice, settings)
+    with watch.stage("free space"):
+        engine = _engine(plan, robot, lattice, settings)
     free, n_states, bands = all_explored(
         engine, robot, lattice, memory_gb=settings.memory_gb, watch=watch, crew=crew
     )

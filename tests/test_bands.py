@@ -1,5 +1,6 @@
 """A floor cut into bands, in turn or by workers of which one dies: the same answer bit for bit."""
 
+import json
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import partial
@@ -10,6 +11,7 @@ import pytest
 
 from satAOI_adapters.cluster import Workers, workers
 from satAOI_geo.bands import BandTask, Explored, Outcome
+from satAOI_geo.cli import main
 from satAOI_geo.errors import InputError, LimitError
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.route import RouteMap
@@ -84,6 +86,27 @@ def test_routes_are_not_looked_for_in_bands() -> None:
     cut = area_of_interest(plan, settings=replace(SETTINGS, memory_gb=TINY_GB))
     with pytest.raises(LimitError, match="--memory"):
         RouteMap(cut.search)
+
+
+def test_memory_without_end_is_one_band() -> None:
+    plan = plans.random_plan(81)
+    found = area_of_interest(plan, settings=replace(SETTINGS, memory_gb=float("inf")))
+    assert len(found.search.pose.bands) == 1
+
+
+def test_the_command_line_shares_a_search_out(tmp_path: Path) -> None:
+    sample = Path(__file__).parents[1] / "samples" / "two_rooms_760.dxf"
+    figures = []
+    for name, options in (
+        ("alone", []),
+        ("shared", ["--workers", "2"]),
+        ("cut", ["--memory", "0.001"]),
+    ):
+        report = tmp_path / f"{name}.json"
+        asked = ["--step", "50", "--quiet", "--report", str(report), *options]
+        assert main([str(sample), *asked]) == 0
+        figures.append({**json.loads(report.read_text(encoding="utf-8")), "timing_s": {}})
+    assert figures[0] == figures[1] == figures[2]
 
 
 @pytest.mark.parametrize("memory_gb", [0.0, -1.0, float("nan")])

@@ -87,7 +87,8 @@ def plans_of(patterns: Sequence[str]) -> list[Plan]:
         is_name = not glob.has_magic(pattern) or Path(pattern).exists()
         # a folder lists its files in any order
         # Path.glob takes no whole pattern, and none that begins at the root
-        names = [pattern] if is_name else sorted(glob.glob(pattern, recursive=True))  # noqa: PTH207
+        matches = [] if is_name else glob.glob(pattern, recursive=True)  # noqa: PTH207  may be absolute
+        names = [pattern] if is_name else sorted(matches)
         files = [name for name in names if not Path(name).is_dir()]
         if not files:
             raise InputError(

@@ -63,8 +63,7 @@ class Outcome(Generic[AnswerT]):
         """The answer; where there is none, its error is raised."""
         if self.error is not None:
             raise self.error
-        # None may be what the function returns
-        return self.answer  # type: ignore[return-value]
+        return self.answer  # type: ignore[return-value]  # None may be what the function returns
 
 
 class Workers(Protocol):

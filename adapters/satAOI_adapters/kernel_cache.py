@@ -40,7 +40,9 @@ def compile_beside() -> None:
     own = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     with contextlib.suppress(OSError):
         # nobody waits for it: what it has not done in time is compiled here
-        subprocess.Popen(command, stdin=silent, stdout=silent, stderr=silent, env=own)  # noqa: S603
+        subprocess.Popen(  # noqa: S603  our own module, by our own interpreter
+            command, stdin=silent, stdout=silent, stderr=silent, env=own
+        )
 
 
 def compile_last() -> None:
