@@ -532,6 +532,37 @@ def test_a_damaged_drawing_is_written_as_far_as_it_can_be_repaired(tmp_path: Pat
     assert len(on_layer(written(result, tmp_path / "a.dxf"), "A-WALL")) == 3
 
 
+def test_an_ellipse_whose_second_axis_is_the_longer_is_the_same_ellipse(tmp_path: Path) -> None:
+    path = drawing_file(tmp_path / "plan.dxf", "R2010")
+    document = ezdxf.readfile(path)
+    document.modelspace().add_ellipse(
+        (100, 200), (1000, 0), ratio=0.5, start_param=0.5, end_param=2.0
+    )
+    document.saveas(path)
+    text = path.read_text(encoding="utf-8")
+    assert text.count("\n 40\n0.5\n") == 1
+    path.write_text(text.replace("\n 40\n0.5\n", "\n 40\n1.5\n"), encoding="utf-8")
+    result = results.on_drawing(results.furnished_result(), path, "mm", Frame())
+    (after,) = written(result, tmp_path / "a.dxf").modelspace().query("ELLIPSE")
+    assert after.dxf.ratio == pytest.approx(1 / 1.5)
+    for angle_rad, point in ((0.5, after.start_point), (2.0, after.end_point)):
+        there = (100 + 1000 * math.cos(angle_rad), 200 + 1500 * math.sin(angle_rad))
+        assert (point.x, point.y) == pytest.approx(there, rel=1e-12)
+
+
+def test_flaws_of_the_input_are_not_said_again_on_the_screen(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    path = drawing_file(tmp_path / "plan.dxf", "R2010")
+    lines = path.read_text(encoding="utf-8").splitlines()
+    start, end = lines.index("ENTITIES"), lines.index("OBJECTS")
+    first, second, *_ = (i + 1 for i in range(start, end) if lines[i] == "  5")
+    lines[second] = lines[first]
+    path.write_text("\n".join(lines), encoding="utf-8")
+    written(results.on_drawing(results.furnished_result(), path, "mm", Frame()), tmp_path / "a.dxf")
+    assert capfd.readouterr().err == ""
+
+
 # --- a plan that came from no drawing --------------------------------------------------------
 
 

@@ -2,10 +2,8 @@
 
 import hashlib
 import io
-import logging
 import re
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -19,6 +17,7 @@ from ezdxf.lldxf.tagger import binary_tags_loader
 from satAOI_adapters.dxf_read import limits, sniff
 from satAOI_adapters.dxf_read.encodings import decoded
 from satAOI_adapters.dxf_read.entities import DRAWN
+from satAOI_adapters.ezdxf_log import heard
 from satAOI_adapters.layers import LayerTable
 from satAOI_geo.errors import UnreadableError
 from satAOI_geo.plan import Finding
@@ -118,7 +117,7 @@ def _loaded(
     name: str, load: Callable[[], Drawing], repair: Callable[[], Drawing], text: str = ""
 ) -> tuple[Drawing, tuple[Finding, ...]]:
     """The document, loaded as it is or repaired, and what ezdxf had to say about it."""
-    with _heard() as said:
+    with heard() as said:
         try:
             return load(), _repairs(said)
         except FAULTS as error:
@@ -139,36 +138,6 @@ def _loaded(
         ),
         *_repairs(said),
     )
-
-
-class _Ear(logging.Handler):
-    """A handler that keeps what is said.
-
-    Attributes:
-        said: The messages, in order.
-    """
-
-    def __init__(self, level: int) -> None:
-        super().__init__(level)
-        self.said: list[str] = []
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Keep a message."""
-        self.said.append(record.getMessage())
-
-
-@contextmanager
-def _heard() -> Iterator[list[str]]:
-    """What ezdxf logs as a warning or worse, kept as data and off the screen."""
-    ear = _Ear(logging.WARNING)
-    logger = logging.getLogger("ezdxf")
-    propagates, logger.propagate = logger.propagate, False
-    logger.addHandler(ear)
-    try:
-        yield ear.said
-    finally:
-        logger.removeHandler(ear)
-        logger.propagate = propagates
 
 
 def _repairs(said: list[str]) -> tuple[Finding, ...]:

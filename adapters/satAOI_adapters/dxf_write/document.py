@@ -10,12 +10,13 @@ from typing import Final
 import ezdxf
 from ezdxf import recover
 from ezdxf.document import Drawing
-from ezdxf.entities import DXFGraphic
+from ezdxf.entities import DXFGraphic, Ellipse
 from ezdxf.lldxf.const import DXF2010, DXFError
 
 from satAOI_adapters.dxf_write.layers import PREFIX
 from satAOI_adapters.dxf_write.pen import Pen
 from satAOI_adapters.dxf_write.place import floor_bounds
+from satAOI_adapters.ezdxf_log import heard
 from satAOI_geo.errors import UnreadableError
 from satAOI_geo.plan import FloorPlan, Source, polygons_in
 
@@ -33,7 +34,15 @@ INSUNITS: Final = {
 }
 """Value of the header variable $INSUNITS for a unit of length."""
 
-DAMAGED: Final = (DXFError, ValueError, LookupError, TypeError, AttributeError, OSError)
+DAMAGED: Final = (
+    DXFError,
+    ValueError,
+    LookupError,
+    TypeError,
+    AttributeError,
+    AssertionError,
+    OSError,
+)
 """What the library raises on a file that breaks the format's rules."""
 
 
@@ -47,7 +56,10 @@ def base_document(plan: FloorPlan) -> Drawing:
         UnreadableError: If the drawing is gone or is not the one that was read.
     """
     from_dxf = plan.source.format == "dxf"
-    document = _opened(plan.source) if from_dxf else _drawn(plan)
+    # what the reader heard of the file's flaws, it has said
+    with heard():
+        document = _opened(plan.source) if from_dxf else _drawn(plan)
+    _turn_ellipses(document)
     document.dxfversion = max(document.dxfversion, DXF2010)
     document.header["$INSUNITS"] = INSUNITS[plan.source.unit]
     _remove_earlier_output(document)
@@ -59,6 +71,9 @@ def file_bytes(document: Drawing) -> bytes:
 
     Dates and GUIDs in the header are fixed, and classes that the library adds come in the order
     of their names: it would take them from a set, in another order every time.
+
+    Raises:
+        UnreadableError: If the input holds something that cannot be written again.
     """
     classes = document.classes.classes
     loaded = set(classes)
@@ -67,8 +82,14 @@ def file_bytes(document: Drawing) -> bytes:
     for key in sorted(set(classes) - loaded):
         classes[key] = classes.pop(key)
     text = io.StringIO(newline="\n")
-    with _fixed_meta_data():
-        document.write(text)
+    try:
+        with _fixed_meta_data(), heard():
+            document.write(text)
+    except DAMAGED as error:
+        raise UnreadableError(
+            f"the drawing holds something that cannot be written again: {error}; open it in a CAD "
+            "program, run its audit and save it again"
+        ) from error
     return text.getvalue().encode(document.output_encoding, errors="dxfreplace")
 
 
@@ -121,6 +142,13 @@ def _look_at_floor(document: Drawing, plan: FloorPlan) -> None:
     document.set_modelspace_vport(
         height=1.2 * max(right - left, top - bottom), center=(right, (bottom + top) / 2)
     )
+
+
+def _turn_ellipses(document: Drawing) -> None:
+    """Let the longer axis of every ellipse be its first, without which none is written."""
+    for entity in document.entitydb.values():
+        if isinstance(entity, Ellipse) and entity.dxf.ratio > 1:
+            entity.swap_axis()  # type: ignore[no-untyped-call]
 
 
 def _remove_earlier_output(document: Drawing) -> None:
