@@ -7,14 +7,15 @@ from pathlib import Path
 import ezdxf
 import pytest
 
-from satAOI_adapters import inspect_plan, inspect_write, read_plan
+from satAOI_adapters import inspect_plan, inspect_write, picture_writer_of, read_plan
 from satAOI_adapters.dxf_read import ReadOptions
 from satAOI_adapters.dxf_read.inspection import Inspection, LayerFigures
 from satAOI_adapters.files import json_of
 from satAOI_adapters.layers import Certainty, Meaning
-from satAOI_geo import DrawingError, UnitError
+from satAOI_geo import DrawingError, EmptyPlanError, UnitError
 from tests.drawings import drawing as drawing_in_mm
 from tests.drawings import rectangle
+from tests.test_dxf_plans import with_foreign
 
 SAMPLES = Path(__file__).parents[1] / "samples"
 
@@ -135,6 +136,68 @@ def test_why_no_plan_comes_of_a_drawing_is_told_beside_its_layers(drawing: Path)
     assert isinstance(found.error, DrawingError)
     assert inspected(drawing).error == str(found.error)
     assert layer_of(inspected(drawing), "FLOOR").meaning is Meaning.FLOOR
+
+
+def test_layers_are_told_of_a_drawing_with_a_coordinate_that_is_no_number(drawing: Path) -> None:
+    document = ezdxf.readfile(drawing)
+    document.modelspace().add_line((math.nan, 0), (1, 1), dxfattribs={"layer": "WALL"})
+    document.save()
+    found = inspect_plan(drawing)
+    assert "not a finite number" in str(found.error)
+    wall = layer_of(inspected(drawing), "WALL")
+    assert (wall.entities, wall.unread) == ({"LINE": 2}, {"LINE": 1})
+    _, _, layers = inspect_write.tables_of(found.figures)
+    assert layers[2][-1] == "2 LINE, 1 LINE unread"
+
+
+def test_layers_are_told_of_a_drawing_with_a_reference_that_lies_nowhere(drawing: Path) -> None:
+    document = ezdxf.readfile(drawing)
+    document.blocks.new("B").add_line((0, 0), (1, 0))
+    document.modelspace().add_blockref("B", (math.inf, 0))
+    document.save()
+    found = inspect_plan(drawing)
+    assert "cannot be placed" in str(found.error)
+    assert layer_of(inspected(drawing), "WALL").entities == {"LINE": 2}
+
+
+def test_layers_are_told_of_a_drawing_whose_reference_is_lost(drawing: Path) -> None:
+    document = ezdxf.readfile(drawing)
+    document.add_xref_def(filename="base.dwg", name="base")
+    document.modelspace().add_blockref("base", (2, 1), {"layer": "X-BASE"})
+    document.save()
+    found = inspect_plan(drawing)
+    assert "base.dwg" in str(found.error)
+    assert layer_of(inspected(drawing), "X-BASE").unread == {"external reference": 1}
+    assert layer_of(inspected(drawing), "WALL").entities == {"LINE": 2}
+
+
+def test_layers_are_told_of_a_drawing_whose_walls_are_objects_of_another_program(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "plan.dxf"
+    path.write_text(with_foreign("TCH_WALL", "A-WALL"), encoding="utf-8")
+    assert "T3" in str(inspect_plan(path).error)
+    wall = layer_of(inspected(path), "A-WALL")
+    assert (wall.meaning, wall.entities, wall.unread) == (Meaning.WALL, {}, {"TCH_WALL": 1})
+    assert layer_of(inspected(path), "FLOOR").entities == {"LWPOLYLINE": 1}
+
+
+@pytest.mark.parametrize("suffix", [".png", ".svg"])
+def test_a_drawing_without_a_line_is_told_of_and_pictured(suffix: str, tmp_path: Path) -> None:
+    document = ezdxf.new("R2010")
+    document.layers.add("WALL").freeze()
+    document.modelspace().add_line((0, 0), (9, 9), dxfattribs={"layer": "WALL"})
+    document.saveas(tmp_path / "empty.dxf")
+    found = inspect_plan(tmp_path / "empty.dxf")
+    assert isinstance(found.error, EmptyPlanError)
+    figures = inspected(tmp_path / "empty.dxf")
+    assert (figures.bounds, figures.size_mm, figures.plans) == (None, None, ())
+    assert layer_of(figures, "WALL").n_hidden == 1
+    facts, _ = inspect_write.tables_of(figures)
+    assert ("from", "-") in facts
+    picture = tmp_path / f"empty{suffix}"
+    picture_writer_of(picture)(picture, found, ())
+    assert picture.stat().st_size > 0
 
 
 def test_the_tables_have_a_line_a_layer(drawing: Path) -> None:

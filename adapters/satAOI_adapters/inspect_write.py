@@ -24,15 +24,23 @@ def tables_of(inspection: "DxfInspection | IfcInspection") -> list[Table]:
 
 
 def _drawing(inspection: DxfInspection) -> Table:
-    left, bottom, right, top = inspection.bounds
+    start, end = _corners(inspection)
     source = inspection.source
     return [
         ("drawing", f"{source.path} ({inspection.version})"),
         ("unit", f"{source.unit} ({source.unit_source})" if source.unit else "not known"),
         ("size", "-" if inspection.size_mm is None else _size(inspection.size_mm)),
-        ("from", f"{left:.10g},{bottom:.10g} in drawing units"),
-        ("to", f"{right:.10g},{top:.10g}"),
+        ("from", f"{start} in drawing units" if start else "-"),
+        ("to", end or "-"),
     ]
+
+
+def _corners(inspection: DxfInspection) -> tuple[str, str]:
+    """The lower left and the upper right corner of what is drawn; empty if nothing is."""
+    if inspection.bounds is None:
+        return "", ""
+    left, bottom, right, top = inspection.bounds
+    return f"{left:.10g},{bottom:.10g}", f"{right:.10g},{top:.10g}"
 
 
 def _plans(inspection: DxfInspection) -> Table:
@@ -55,6 +63,7 @@ def _layers(inspection: DxfInspection) -> Table:
 
 def _layer(layer: LayerFigures) -> tuple[str, ...]:
     hidden = [f"{layer.n_hidden} hidden"] if layer.n_hidden else []
+    unread = [f"{told} unread" for told in _counted(layer.unread)]
     return (
         layer.layer,
         layer.meaning or ("-" if layer.entities else "not read"),
@@ -62,7 +71,7 @@ def _layer(layer: LayerFigures) -> tuple[str, ...]:
         layer.pattern or "-",
         "-" if layer.area_mm2 is None else f"{layer.area_mm2 / MM2_PER_M2:.2f}",
         "-" if layer.length_mm is None else f"{layer.length_mm / MM_PER_M:.2f}",
-        ", ".join([*_counted(layer.entities), *hidden]),
+        ", ".join([*_counted(layer.entities), *unread, *hidden]),
     )
 
 

@@ -86,12 +86,14 @@ class Expansion:
         hidden: Entities not read because of a layer that is frozen or off, by layer.
         missing: External references that could not be followed.
         findings: What could not be resolved, or was replaced.
+        fault: Why no plan can come of it: the first reference that lies nowhere.
     """
 
     placed: tuple[Placed, ...]
     hidden: Counter[str]
     missing: tuple[Missing, ...]
     findings: tuple[Finding, ...]
+    fault: DrawingError | None
 
 
 @dataclass(slots=True)
@@ -106,6 +108,7 @@ class _Walk:
     pictured: Counter[str] = field(default_factory=Counter)
     missing: list[Missing] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
+    fault: DrawingError | None = None
 
     def is_frozen(self, layer: str) -> bool:
         return not self.include_hidden and self._has(layer, frozen=True)
@@ -161,6 +164,7 @@ def expand(document: Drawing, *, xrefs: Xrefs, include_hidden: bool) -> Expansio
         walk.hidden,
         tuple(walk.missing),
         (*walk.findings, *_pictured(walk.pictured)),
+        walk.fault,
     )
 
 
@@ -265,12 +269,13 @@ def _levels(
     for offset in _copies(insert):
         matrix = insert.matrix44() * Matrix44.translate(*offset) * level.matrix
         if not all(map(math.isfinite, matrix)):
-            raise DrawingError(
+            walk.fault = walk.fault or DrawingError(
                 f"the reference {insert.dxf.get('handle')} to block '{name}' on layer '{layer}' "
                 f"cannot be placed: {not_finite(insert)}; correct it in the drawing or delete it",
                 layer=layer,
                 handle=handle,
             )
+            return
         blocks = (*level.blocks, name)
         yield _Level(iter(content), matrix, layer, blocks, handle, document, prefix)
 

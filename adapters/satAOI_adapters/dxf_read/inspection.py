@@ -10,7 +10,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.features import Feature
-from satAOI_adapters.dxf_read.meaning import Seen
+from satAOI_adapters.dxf_read.meaning import Seen, verdict_of
 from satAOI_adapters.dxf_read.obstacles import area_of
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.plans import Drawn, clusters
@@ -38,6 +38,9 @@ if TYPE_CHECKING:
 PART_SIGNS = (*KINDS, Meaning.FLOOR, Meaning.DOOR)
 """Meanings that tell parts of a drawing from one another."""
 
+XREF = "external reference"
+"""Said of a reference that is not loaded."""
+
 
 @dataclass(frozen=True, slots=True)
 class LayerFigures:
@@ -53,6 +56,7 @@ class LayerFigures:
             the unit is not known.
         length_mm: Of all their lines; None where the unit is not known.
         n_hidden: Entities of the layer that are not read since it is frozen or off.
+        unread: How many of each type show something that cannot be read.
     """
 
     layer: str
@@ -63,6 +67,7 @@ class LayerFigures:
     area_mm2: float | None
     length_mm: float | None
     n_hidden: int
+    unread: dict[str, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +92,8 @@ class Inspection:
     Attributes:
         source: The file and its unit; the unit is empty where it is not known.
         version: Of its format, for example AC1024.
-        bounds: Left, bottom, right, top of what is drawn, in drawing units.
-        size_mm: Width and height of it; None where the unit is not known.
+        bounds: Left, bottom, right, top of what is drawn, in drawing units; None if nothing is.
+        size_mm: Width and height of it; None where that or the unit is not known.
         plans: Parts that may be plans, the likeliest first; none where the unit is not known.
         layers: By name; a layer whose blocks are read differently has several.
         findings: What was skipped, guessed or repaired.
@@ -97,7 +102,7 @@ class Inspection:
 
     source: Source
     version: str
-    bounds: Bounds
+    bounds: Bounds | None
     size_mm: tuple[float, float] | None
     plans: tuple[PlanFigures, ...]
     layers: tuple[LayerFigures, ...]
@@ -111,17 +116,19 @@ class _Tally:
 
     entities: Counter[str] = field(default_factory=Counter)
     features: list[Feature] = field(default_factory=list)
+    unread: Counter[str] = field(default_factory=Counter)
 
 
 def inspect(path: Path, options: ReadOptions) -> Inspected[Inspection]:
     """How a drawing is read with these options.
 
-    A drawing that holds lines, but no plan as it is, is told of as far as it goes, with the error
-    that reading it ends with.
+    A drawing that holds no plan as it is is told of as far as it goes, with the error that reading
+    it ends with.
 
     Raises:
         InputError: If an option or the layer file is wrong.
-        DrawingError: If nothing can be told of the drawing.
+        DrawingError: If nothing can be told of the drawing: it is no DXF, or its blocks contain
+            themselves.
         LimitError: If it asks for more than `limits` allows.
     """
     drawing = survey(path, options)
@@ -132,18 +139,19 @@ def inspect(path: Path, options: ReadOptions) -> Inspected[Inspection]:
     drawn = list(drawn_by(drawing.seen, frame))
     sketch = _sketch(drawn, frame, with_parts=is_measured)
     findings = drawing.findings if plan is None else plan.findings
+    table = layer_table(options.layers)
+    tallies = _tallies(drawn, drawing, table)
     figures = Inspection(
         source=_source(drawing),
         version=drawing.document.dxfversion,
         bounds=drawing.box,
-        size_mm=_size(drawing.box, frame.mm_per_unit) if is_measured else None,
+        size_mm=_size(drawing.box, frame.mm_per_unit) if is_measured and drawing.box else None,
         plans=_plans(sketch),
-        layers=_layers(_tallies(drawn), drawing.expansion.hidden, is_measured=is_measured),
+        layers=_layers(tallies, drawing.expansion.hidden, is_measured=is_measured),
         findings=findings,
         error="" if error is None else str(error),
     )
-    layers = _layer_map(drawing, layer_table(options.layers))
-    return Inspected(figures, findings, plan, error, sketch, layers)
+    return Inspected(figures, findings, plan, error, sketch, _layer_map(drawing, table))
 
 
 def _plan_or_error(
@@ -161,13 +169,21 @@ def _source(drawing: Survey) -> Source:
     return drawing.source()
 
 
-def _tallies(drawn: Iterable[tuple[Seen, list[Feature]]]) -> dict[tuple[str, Verdict], _Tally]:
+def _tallies(
+    drawn: Iterable[tuple[Seen, list[Feature]]], drawing: Survey, table: LayerTable
+) -> dict[tuple[str, Verdict], _Tally]:
     """What each layer holds, by what it is taken for."""
     tallies: dict[tuple[str, Verdict], _Tally] = {}
     for entity, features in drawn:
         tally = tallies.setdefault((entity.placed.layer, entity.verdict), _Tally())
         tally.entities[entity.placed.kind] += 1
         tally.features.extend(features)
+    for placed in drawing.unread:
+        key = (placed.layer, verdict_of(placed, table))
+        tallies.setdefault(key, _Tally()).unread[placed.kind] += 1
+    for missing in drawing.expansion.missing:
+        key = (missing.layer, table.of_layer(missing.layer))
+        tallies.setdefault(key, _Tally()).unread[XREF] += 1
     return tallies
 
 
@@ -187,6 +203,7 @@ def _layers(
             area_mm2=_area_mm2(tally.features) if is_measured else None,
             length_mm=_length_mm(tally.features) if is_measured else None,
             n_hidden=hidden[layer],
+            unread=dict(tally.unread.most_common()),
         )
         for (layer, verdict), tally in sorted({**tallies, **unseen}.items(), key=_by_layer)
     )

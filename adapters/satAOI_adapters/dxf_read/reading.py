@@ -74,6 +74,8 @@ def read(path: Path, options: ReadOptions) -> FloorPlan:
 
 def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
     """The floor plan in a drawing that has been surveyed; errors as for `read`."""
+    if drawing.fault is not None:
+        raise drawing.fault
     frame = drawing.frame()
     start_mm, start_findings = _start(drawing, frame, options)
     everything = drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))

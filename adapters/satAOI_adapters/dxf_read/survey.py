@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeAlias
 
 import numpy as np
 from ezdxf.document import Drawing
@@ -14,17 +14,23 @@ from satAOI_adapters.dxf_read import limits
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.entities import DRAWN, features_of
 from satAOI_adapters.dxf_read.estimate import estimate
-from satAOI_adapters.dxf_read.expand import Expansion, expand
+from satAOI_adapters.dxf_read.expand import Expansion, Placed, expand
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.meaning import LISTED, Seen, with_meaning
 from satAOI_adapters.dxf_read.opening import open_drawing
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.plans import Drawn
 from satAOI_adapters.dxf_read.units import Known, Unit, unit_of
-from satAOI_adapters.dxf_read.unread import missing_xrefs, unread_entities
+from satAOI_adapters.dxf_read.unread import (
+    foreign_fault,
+    foreign_findings,
+    foreign_in,
+    xref_fault,
+    xref_findings,
+)
 from satAOI_adapters.dxf_read.xrefs import xrefs_in
 from satAOI_adapters.layers import LayerTable, Meaning, layer_table
-from satAOI_geo.errors import EmptyPlanError, UnitError
+from satAOI_geo.errors import DrawingError, EmptyPlanError, UnitError
 from satAOI_geo.plan import Finding, FloatArray, Frame, Source
 
 FEET_AND_INCHES: Final = (3, 4)
@@ -35,6 +41,10 @@ OWN_PREFIX: Final = "SATAOI-"
 
 NO_UNIT: Final = 0
 """$INSUNITS of a drawing that does not say."""
+
+
+Box: TypeAlias = tuple[float, float, float, float]
+"""Left, bottom, right, top."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +60,13 @@ class Survey:
         expansion: All that the drawing shows, hides or lacks.
         known: The unit of length and what is to be said about it, or why it is not known; the
             layers can be told without it.
-        box: Left, bottom, right, top of what is drawn, in drawing units.
+        box: Left, bottom, right, top of what is drawn, in drawing units; None if nothing is.
         door_blocks: Names of blocks that are doors.
         is_named: Whether layers tell what stops the robot, rather than everything being walls.
         middle: In the midst of it, in drawing units; a few strays do not move it.
         noticed: What was noticed so far, the unit aside.
+        unread: What shows something that cannot be read.
+        fault: Why no plan can come of it, whatever the unit; the layers can be told all the same.
     """
 
     path: Path
@@ -64,11 +76,13 @@ class Survey:
     seen: tuple[Seen, ...]
     expansion: Expansion
     known: Known | UnitError
-    box: tuple[float, float, float, float]
+    box: Box | None
     middle: Point
     door_blocks: frozenset[str]
     is_named: bool
     noticed: tuple[Finding, ...]
+    unread: tuple[Placed, ...]
+    fault: DrawingError | None
 
     @property
     def unit(self) -> Unit:
@@ -146,11 +160,11 @@ def drawn_by(entities: Iterable[Seen], frame: Frame) -> Iterator[tuple[Seen, lis
 
 
 def survey(path: Path, options: ReadOptions) -> Survey:
-    """Open a drawing and say what is in it.
+    """Open a drawing and say what is in it, and why no plan can come of it if that is so.
 
     Raises:
         InputError: If an option or the layer file is wrong.
-        DrawingError: If the drawing cannot be used as it is.
+        DrawingError: If the file or its blocks cannot be resolved.
         LimitError: If it asks for more than `limits` allows.
     """
     table = layer_table(options.layers)
@@ -160,20 +174,12 @@ def survey(path: Path, options: ReadOptions) -> Survey:
         xrefs=xrefs_in(options.xref_dir, table),
         include_hidden=options.include_hidden,
     )
-    unread = (
-        *missing_xrefs(expansion.missing, table),
-        *unread_entities(expansion.placed, table),
-    )
+    foreign = foreign_in(expansion.placed)
     drawn = [placed for placed in expansion.placed if placed.kind in DRAWN]
     seen, fallback = with_meaning(drawn, table)
-    rough = _in_drawing_units(seen)
-    if not rough:
-        raise EmptyPlanError(
-            f"'{path.name}' shows nothing in model space that could be a plan; "
-            f"{_what_else(expansion)}"
-        )
+    rough, broken = _in_drawing_units(seen)
     near, box, middle, strays = _without_strays(rough)
-    size = (box[2] - box[0], box[3] - box[1])
+    size = (0.0, 0.0) if box is None else (box[2] - box[0], box[3] - box[1])
     header = opened.document.header
     guess = estimate(
         [(entity.verdict.meaning, feature) for entity, feature in near],
@@ -202,9 +208,18 @@ def survey(path: Path, options: ReadOptions) -> Survey:
             *opened.findings,
             *expansion.findings,
             *_hidden(expansion.hidden),
-            *unread,
+            *xref_findings(expansion.missing, table),
+            *foreign_findings(foreign),
             *strays,
             *fallback,
+        ),
+        unread=(*foreign, *(entity for entity, _ in broken)),
+        fault=(
+            expansion.fault
+            or xref_fault(expansion.missing, table)
+            or foreign_fault(foreign, table)
+            or next((fault for _, fault in broken), None)
+            or (None if near else _empty(path.name, expansion))
         ),
     )
 
@@ -214,21 +229,32 @@ def _door_blocks(seen: Iterable[Seen], table: LayerTable) -> frozenset[str]:
     return frozenset(name for name in names if table.of_block(name).meaning is Meaning.DOOR)
 
 
-def _in_drawing_units(seen: Iterable[Seen]) -> list[tuple[Seen, Feature]]:
-    """What is drawn, to measure it before the unit is known."""
-    return [(entity, f) for entity in seen for f in features_of(entity.placed, 1.0, (0.0, 0.0))]
+def _in_drawing_units(
+    seen: Iterable[Seen],
+) -> tuple[list[tuple[Seen, Feature]], list[tuple[Placed, DrawingError]]]:
+    """What is drawn, to measure it before the unit is known, and what cannot be read."""
+    rough: list[tuple[Seen, Feature]] = []
+    broken: list[tuple[Placed, DrawingError]] = []
+    for entity in seen:
+        try:
+            drawn = features_of(entity.placed, 1.0, (0.0, 0.0))
+        except DrawingError as error:
+            broken.append((entity.placed, error))
+        else:
+            rough.extend((entity, feature) for feature in drawn)
+    return rough, broken
 
 
 def _without_strays(
     rough: Sequence[tuple[Seen, Feature]],
-) -> tuple[
-    list[tuple[Seen, Feature]], tuple[float, float, float, float], Point, tuple[Finding, ...]
-]:
+) -> tuple[list[tuple[Seen, Feature]], Box | None, Point, tuple[Finding, ...]]:
     """What lies together, its box and its middle, and what is said about the rest.
 
     Entities farther from the middle than `limits.MAX_COORDINATE` are strays of a slip of the
     keyboard; kept, they would take the digits that the plan needs.
     """
+    if not rough:
+        return [], None, (0.0, 0.0), ()
     boxes = np.array([feature.box() for _, feature in rough])
     middle = _middle(boxes[:, :2])
     is_near = np.abs(boxes - np.tile(middle, 2)).max(axis=1) <= limits.MAX_COORDINATE
@@ -264,6 +290,12 @@ def _middle(corners: FloatArray) -> FloatArray:
         for candidate in candidates
     ]
     return candidates[int(np.argmax(n_near))]
+
+
+def _empty(name: str, expansion: Expansion) -> EmptyPlanError:
+    return EmptyPlanError(
+        f"'{name}' shows nothing in model space that could be a plan; {_what_else(expansion)}"
+    )
 
 
 def _what_else(expansion: Expansion) -> str:

@@ -1,4 +1,4 @@
-"""What a drawing holds that cannot be read: said where it does not matter, else refused."""
+"""What a drawing holds that cannot be read: said where it does not matter, else a fault."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -17,21 +17,22 @@ BUILDING_PARTS: Final = ("WALL", "COLUMN", "SLAB")
 """Words in the names of other programs' objects (TCH_WALL, AEC_COLUMN) that stop the robot."""
 
 
-def missing_xrefs(missing: Sequence[Missing], table: LayerTable) -> tuple[Finding, ...]:
-    """External references that may be missing; any other ends the reading.
-
-    Raises:
-        DrawingError: If one is missing that the layer file does not call unimportant.
-    """
+def xref_fault(missing: Sequence[Missing], table: LayerTable) -> DrawingError | None:
+    """What is wrong if a reference is missing that the layer file does not call unimportant."""
     needed = [xref for xref in missing if not _is_ignored(xref, table)]
-    if needed:
-        files = ", ".join(sorted({f"'{xref.path or xref.name}'" for xref in needed}))
-        raise DrawingError(
-            f"external references are not loaded: {files}; bind them in the drawing, or save them "
-            "as DXF and give their folder with --xref-dir",
-            layer=needed[0].layer,
-            handle=needed[0].handle,
-        )
+    if not needed:
+        return None
+    files = ", ".join(sorted({f"'{xref.path or xref.name}'" for xref in needed}))
+    return DrawingError(
+        f"external references are not loaded: {files}; bind them in the drawing, or save them "
+        "as DXF and give their folder with --xref-dir",
+        layer=needed[0].layer,
+        handle=needed[0].handle,
+    )
+
+
+def xref_findings(missing: Sequence[Missing], table: LayerTable) -> tuple[Finding, ...]:
+    """What is to be said about external references that may be missing."""
     return tuple(
         Finding(
             "xref-missing",
@@ -40,6 +41,7 @@ def missing_xrefs(missing: Sequence[Missing], table: LayerTable) -> tuple[Findin
             handle=xref.handle,
         )
         for xref in missing
+        if _is_ignored(xref, table)
     )
 
 
@@ -48,26 +50,29 @@ def _is_ignored(xref: Missing, table: LayerTable) -> bool:
     return Meaning.IGNORE in {by_name.meaning, by_layer.meaning}
 
 
-def unread_entities(placed: Sequence[Placed], table: LayerTable) -> tuple[Finding, ...]:
-    """Objects that cannot be read and need not be; one that may stop the robot ends the reading.
+def foreign_in(placed: Sequence[Placed]) -> list[Placed]:
+    """Objects of other programs, and other types that cannot be read."""
+    return [e for e in placed if e.kind not in DRAWN and e.kind not in NO_LINEWORK]
 
-    Raises:
-        DrawingError: If there are some on a layer of obstacles or of the floor, or walls and
-            columns of another program.
-    """
-    unknown = [e for e in placed if e.kind not in DRAWN and e.kind not in NO_LINEWORK]
-    counts = Counter((entity.kind, entity.layer) for entity in unknown)
-    for entity in unknown:
-        if _may_stop(entity, table):
-            said = ", ".join(
-                f"{n} {kind} on layer '{layer}'" for (kind, layer), n in counts.items()
-            )
-            raise DrawingError(
-                f"{said} cannot be read, and some may be walls or floor; explode them, or export "
-                "the drawing without objects of other programs (TArch: export as T3)",
-                layer=entity.layer,
-                handle=entity.handle,
-            )
+
+def foreign_fault(foreign: Sequence[Placed], table: LayerTable) -> DrawingError | None:
+    """What is wrong if some are on a layer of obstacles or of the floor, or are walls by name."""
+    stopping = next((entity for entity in foreign if _may_stop(entity, table)), None)
+    if stopping is None:
+        return None
+    counts = Counter((entity.kind, entity.layer) for entity in foreign)
+    said = ", ".join(f"{n} {kind} on layer '{layer}'" for (kind, layer), n in counts.items())
+    return DrawingError(
+        f"{said} cannot be read, and some may be walls or floor; explode them, or export "
+        "the drawing without objects of other programs (TArch: export as T3)",
+        layer=stopping.layer,
+        handle=stopping.handle,
+    )
+
+
+def foreign_findings(foreign: Sequence[Placed]) -> tuple[Finding, ...]:
+    """What is to be said about objects that cannot be read."""
+    counts = Counter((entity.kind, entity.layer) for entity in foreign)
     return tuple(
         Finding(
             "entity-unread",

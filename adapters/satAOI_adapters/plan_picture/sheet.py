@@ -137,6 +137,8 @@ def sketch_bounds_mm(sketch: Sketch) -> Bounds:
     """Where the parts that may be plans lie in the drawing's axes, or all where there are none."""
     everything = [line for lines in sketch.lines.values() for line in lines]
     shown = [box(*part_mm) for part_mm in sketch.parts_mm] or everything
+    if not shown:
+        return 0.0, 0.0, 0.0, 0.0
     return _bounds_mm(shapely.get_coordinates(shown), sketch.frame)
 
 
