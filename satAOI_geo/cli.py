@@ -97,11 +97,15 @@ BATCH_EPILOG: Final = (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the program and return its exit code; a known error becomes one line of talk."""
+    from satAOI_adapters.collector import collector_at_leisure, leave_at_once
     from satAOI_adapters.terminal import accept_any_text, say_error
 
     accept_any_text()
+    leave_at_once()
     try:
-        return int(commands.main(arguments, prog_name="satAOI-geo", standalone_mode=False) or DONE)
+        with collector_at_leisure():
+            code = commands.main(arguments, prog_name="satAOI-geo", standalone_mode=False)
+        return int(code or DONE)
     except click.ClickException as error:
         say_error(error.format_message())
         return error.exit_code

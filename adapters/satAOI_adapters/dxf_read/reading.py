@@ -14,7 +14,7 @@ from ezdxf.entities import Point as PointEntity
 from ezdxf.math import Vec3
 from shapely.geometry import LineString, box
 
-from satAOI_adapters.dxf_read.collector import collector_at_rest
+from satAOI_adapters.collector import collector_at_rest
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.doors import (
     partition_findings,
