@@ -6,6 +6,7 @@ step² / 8R high: 0.036 mm for the prototype. The *clean* outline draws them as 
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -15,7 +16,7 @@ from shapely.geometry import Polygon
 
 from satAOI_geo.discs import Arcs, boundary, covered_cells
 from satAOI_geo.errors import InputError
-from satAOI_geo.lattice import Lattice
+from satAOI_geo.lattice import WORD_BITS, Lattice
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import BoolArray, FloatArray, IntArray
 
@@ -37,14 +38,14 @@ class Loop:
 
     def area_mm2(self) -> float:
         """Area enclosed, positive when the loop runs counter-clockwise; arcs count exactly."""
-        # from the first vertex, so that coordinates far from the origin cost no digits
-        corners_mm = self.vertices[:, :2] - self.vertices[0, :2]
-        next_mm = np.roll(corners_mm, -1, axis=0)
-        crosses_mm2 = corners_mm[:, 0] * next_mm[:, 1] - next_mm[:, 0] * corners_mm[:, 1]
-        bulges = self.vertices[:, 2]
-        curved = bulges != 0
-        chords_mm = np.hypot(*(next_mm - corners_mm)[curved].T)
-        angles_rad = 4 * np.arctan(bulges[curved])
+        # from the first vertex, so that coordinates far from the origin cost no digits, and the
+        # line back to it no area
+        x_mm, y_mm = (self.vertices[:, :2] - self.vertices[0, :2]).T
+        crosses_mm2 = x_mm[:-1] * y_mm[1:] - x_mm[1:] * y_mm[:-1]
+        begins = np.flatnonzero(self.vertices[:, 2])
+        ends = (begins + 1) % x_mm.size
+        chords_mm = np.hypot(x_mm[ends] - x_mm[begins], y_mm[ends] - y_mm[begins])
+        angles_rad = 4 * np.arctan(self.vertices[begins, 2])
         # of both signs, squared below
         radii_mm = chords_mm / (2 * np.sin(angles_rad / 2))
         segments_mm2 = radii_mm**2 * (angles_rad - np.sin(angles_rad)) / 2
@@ -181,21 +182,103 @@ def area(reached: Nodes, lattice: Lattice, disc_radius_mm: float, *, exact: bool
     Raises:
         InputError: If `reached` is not of the lattice's shape.
     """
-    if reached.shape != lattice.shape:
-        raise InputError(
-            f"the reached nodes have the shape {reached.shape}, the lattice {lattice.shape}; "
-            "give nodes of this lattice"
-        )
-    radius = disc_radius_mm / lattice.step_mm
-    cells = covered_cells(reached, radius)
-    arcs = boundary(reached, radius)
-    begins_mm = np.array(lattice.origin_mm) + (arcs.begins + 0.5) * lattice.step_mm
-    vertices = np.column_stack((begins_mm, _bulges(arcs.spans_rad)))
+    (only,) = areas([reached], [lattice], disc_radius_mm, exact=exact)
+    return only
+
+
+def areas(
+    sets: Sequence[Nodes],
+    windows: Sequence[Lattice],
+    disc_radius_mm: float,
+    *,
+    exact: bool = False,
+) -> list[Aoi]:
+    """The areas of several sets of nodes, each in a window of its own; see `area`.
+
+    What is done once for all of them is most of what a small one would take.
+    """
+    for reached, window in zip(sets, windows, strict=True):
+        if reached.shape != window.shape:
+            raise InputError(
+                f"the reached nodes have the shape {reached.shape}, the lattice {window.shape}; "
+                "give nodes of this lattice"
+            )
+    step_mm = windows[0].step_mm
+    stack = _Stack.of(sets, disc_radius_mm / step_mm)
+    cells = stack.parted(covered_cells(stack.nodes, disc_radius_mm / step_mm), windows)
+    outlines = _outlines_of(stack, windows, disc_radius_mm, exact=exact)
+    return [
+        Aoi(covered, parts, covered.count() * step_mm**2)
+        for covered, parts in zip(cells, outlines, strict=True)
+    ]
+
+
+def outlines_of(reached: Nodes, lattice: Lattice, disc_radius_mm: float) -> tuple[Outline, ...]:
+    """The outlines of the area alone; see `area`."""
+    stack = _Stack.of([reached], disc_radius_mm / lattice.step_mm)
+    (outlines,) = _outlines_of(stack, [lattice], disc_radius_mm, exact=False)
+    return outlines
+
+
+@dataclass(frozen=True, slots=True)
+class _Stack:
+    """Sets of nodes in one window, above each other, too far apart for their discs to meet.
+
+    Attributes:
+        nodes: All of them.
+        first_rows: Shape (n,), the row that row 0 of each set is.
+    """
+
+    nodes: Nodes
+    first_rows: IntArray
+
+    @classmethod
+    def of(cls, sets: Sequence[Nodes], radius: float) -> "_Stack":
+        """The sets with room for discs of a radius, in steps, between them."""
+        apart = math.floor(2 * radius) + 1
+        heights = [reached.words.shape[0] + apart for reached in sets]
+        first_rows = np.cumsum([0, *heights[:-1]])
+        if len(sets) == 1:
+            return cls(sets[0], first_rows)
+        width = max(reached.words.shape[1] for reached in sets)
+        words = np.zeros((sum(heights), width), dtype=np.uint64)
+        for reached, row in zip(sets, first_rows.tolist(), strict=True):
+            n_rows, n_words = reached.words.shape
+            words[row : row + n_rows, :n_words] = reached.words
+        return cls(Nodes(words, WORD_BITS * width), first_rows)
+
+    def parted(self, cells: Nodes, windows: Sequence[Lattice]) -> list[Nodes]:
+        """Cells of the stack in the windows of its sets, what is beyond these cut off."""
+        return [
+            Nodes(
+                cells.window(slice(row, row + window.n_rows), slice(0, window.n_columns)).words
+                & ~window.no_nodes(),
+                window.n_columns,
+            )
+            for window, row in zip(windows, self.first_rows.tolist(), strict=True)
+        ]
+
+
+def _outlines_of(
+    stack: _Stack, windows: Sequence[Lattice], disc_radius_mm: float, *, exact: bool
+) -> list[tuple[Outline, ...]]:
+    """The outlines of the area of each set of a stack."""
+    step_mm = windows[0].step_mm
+    arcs = boundary(stack.nodes, disc_radius_mm / step_mm)
+    owner = np.searchsorted(stack.first_rows, arcs.nodes[:, 1], side="right") - 1
+    begins = arcs.begins - np.column_stack((np.zeros(owner.size), stack.first_rows[owner]))
+    origins_mm = np.array([window.origin_mm for window in windows])
+    vertices = np.column_stack(
+        (origins_mm[owner] + (begins + 0.5) * step_mm, _bulges(arcs.spans_rad))
+    )
+    owners = owner[arcs.loops[:-1]]
     loops = arcs.loops
     if not exact:
         vertices, loops = _cleaned(vertices, arcs, disc_radius_mm)
-    raster_area_mm2 = cells.count() * lattice.step_mm**2
-    return Aoi(cells, _outlines(_split(vertices, loops)), raster_area_mm2)
+    owned: list[list[Loop]] = [[] for _ in windows]
+    for loop, number in zip(_split(vertices, loops), owners.tolist(), strict=True):
+        owned[number].append(loop)
+    return [_outlines(own) for own in owned]
 
 
 def _bulges(spans_rad: FloatArray) -> FloatArray:

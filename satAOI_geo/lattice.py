@@ -128,6 +128,21 @@ class Lattice:
             first_row=0,
         )
 
+    def around(self, rows: slice, columns: slice, reach_mm: float) -> tuple[slice, slice]:
+        """Rows and columns that hold a window and all of the lattice within reach of it.
+
+        The columns begin and end with a word, or with the lattice.
+        """
+        pad = math.ceil(reach_mm / self.step_mm)
+        left, beyond = max(0, columns.start - pad), columns.stop + pad
+        return (
+            slice(max(0, rows.start - pad), min(self.n_rows, rows.stop + pad)),
+            slice(
+                left // WORD_BITS * WORD_BITS,
+                min(self.n_columns, -(-beyond // WORD_BITS) * WORD_BITS),
+            ),
+        )
+
     def band(self, rows: slice) -> "Lattice":
         """Some rows of the lattice, with start and stop, in the same axes."""
         first_row = self.first_row + rows.start

@@ -37,6 +37,11 @@ class Nodes:
         """(rows, columns)."""
         return self.words.shape[0], self.n_columns
 
+    def window(self, rows: slice, columns: slice) -> "Nodes":
+        """Those in a window, with start and stop; see `Lattice.around` for its columns."""
+        words = self.words[rows, columns.start // WORD_BITS : -(-columns.stop // WORD_BITS)]
+        return Nodes(words, columns.stop - columns.start)
+
     def count(self) -> int:
         """How many nodes there are."""
         return int(np.bitwise_count(self.words).sum())

@@ -8,7 +8,7 @@ from satAOI_geo.freespace import run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import FloorPlan
 from satAOI_geo.progress import Progress, Stopwatch
-from satAOI_geo.reasons import Patch, Reason, fitting_nodes, unreached
+from satAOI_geo.reasons import Patch, unreached
 from satAOI_geo.report import Report, report_of
 from satAOI_geo.robot import PROTOTYPE, Robot
 from satAOI_geo.search import Search, search
@@ -94,18 +94,17 @@ def area_of_interest(
             "disc": found.disc.nodes(found.start.disc_label),
             "pose": found.pose.nodes(found.start.pose_label),
         }
-        fitting = fitting_nodes(found.engine, robot, lattice, found.free)
-        sets = [*nodes.values(), *fitting.values()]
         exact = settings.exact_outline
-        covered = run_threads(lambda k: area(sets[k], lattice, disc_mm, exact=exact), len(sets))
-        areas = dict(zip(nodes, covered[: len(nodes)], strict=True))
-        wider = dict(zip(fitting, covered[len(nodes) :], strict=True))
-        wider[Reason.PATH] = areas["disc"]
+        rules = list(nodes)
+        covered = run_threads(
+            lambda k: area(nodes[rules[k]], lattice, disc_mm, exact=exact), len(rules)
+        )
+        areas = dict(zip(rules, covered, strict=True))
     with watch.stage("zones"):
-        all_zones = zones(found.pose, lattice, disc_mm)
+        all_zones = zones(found.pose, lattice, disc_mm, watch.share)
         downs = set_downs(found.pose, found.free, lattice, disc_mm)
     with watch.stage("reasons"):
-        patches = unreached(found.plan, lattice, areas[settings.connectivity], wider)
+        patches = unreached(found, areas[settings.connectivity], areas["disc"], watch.share)
     report = report_of(
         found,
         n_nodes={rule: reached.count() for rule, reached in nodes.items()},

@@ -9,31 +9,28 @@ What lies between two of them has one reason, and all of them together are the f
 area of interest leaves over.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import reduce
-from itertools import pairwise
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
-from shapely.geometry import MultiPolygon, Point, Polygon
+from shapely.geometry import Point, Polygon
 
-from satAOI_geo.aoi import Aoi
-from satAOI_geo.engine import Engine
-from satAOI_geo.lattice import Lattice
+from satAOI_geo.aoi import Aoi, outlines_of
+from satAOI_geo.freespace import run_threads
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import FloorPlan, Obstacle, Region, as_region, polygons_in
-from satAOI_geo.robot import Robot
-
-SAGITTA_MM: Final = 0.01
-"""How far the polygons of patches may leave the arcs they share with the area of interest."""
-
+from satAOI_geo.search import Search
+from satAOI_geo.tiles import Bounds, Tile, clipped, cuts, grown, region_of
 
 APART_MM: Final = 0.05
 """By how much outlines that run along each other are set apart before they are overlaid. Lines a
 rounding apart cross hundreds of times; what divides one reason from another may move by as much."""
+
+EVERY_ROW: Final = slice(None)
 
 NARROW_CELLS: Final = 2
 """Between the disc and a wall the lattice leaves strips of up to a cell, askew to it 1.4 cells."""
@@ -83,91 +80,198 @@ class Patch:
         return float(self.region.area)
 
 
-def fitting_nodes(
-    engine: Engine, robot: Robot, lattice: Lattice, free: Nodes
-) -> dict[Reason, Nodes]:
-    """Nodes at which the disc, the disc and the arm, or any pose touches nothing.
-
-    What the disc covers from them holds what is left over for the reason each stands at; `free`
-    are the nodes at which some pose is free.
-    """
-    capsules = (~engine.blocked(robot.capsule(arm)) for arm in lattice.directions())
-    return {
-        Reason.ARM: Nodes(~engine.blocked(robot.disc()), lattice.n_columns),
-        Reason.VEHICLE: Nodes(reduce(np.bitwise_or, capsules), lattice.n_columns),
-        Reason.ZONE: free,
-    }
-
-
 def unreached(
-    plan: FloorPlan, lattice: Lattice, aoi: Aoi, wider: dict[Reason, Aoi]
+    found: Search, aoi: Aoi, upper: Aoi, progress: Callable[[float], None] | None = None
 ) -> tuple[Patch, ...]:
     """The patches of free floor that the area of interest leaves over, largest first.
 
+    The floor is gone through in tiles; patches are joined where they meet at a seam.
+
     Args:
-        plan: The floor and its obstacles.
-        lattice: Nodes and directions.
+        found: The search that led to the area.
         aoi: The area of interest.
-        wider: For each reason but `disc` the area that holds what is left over for that reason
-            and for all that come after it in `Reason`.
+        upper: The area that is disc-connected with the start.
+        progress: Called with the share of the floor that is done.
 
     Returns:
         Patches whose areas and the area of interest add up to the free floor. Strips narrower
         than `NARROW_CELLS`, which finer steps of the disc would cover in part, and crumbs smaller
-        than a cell are gathered in one patch at the end.
+        than a cell are gathered in one patch a tile, after the others.
     """
-    rest = as_region(plan.free_region().difference(_region(aoi)))
-    covered = {reason: _region(area) for reason, area in wider.items()}
-    parts = polygons_in([rest])
-    width_mm = NARROW_CELLS * lattice.step_mm
-    broad = [_opened(part, width_mm) for part in parts]
-    strips = [part.difference(region) for part, region in zip(parts, broad, strict=True)]
-    pieces = [
-        piece for part in polygons_in(broad) for piece in _split(part, covered, lattice.step_mm)
-    ]
-    blockers = _Blockers(plan)
-    crumb_mm2 = lattice.step_mm**2
-    patches = [blockers.patch(piece, reason) for reason, piece in pieces if piece.area >= crumb_mm2]
-    patches.sort(key=lambda patch: (-patch.area_mm2, patch.label_mm))
-    crumbs = [piece for _, piece in pieces if piece.area < crumb_mm2]
-    narrow = as_region(shapely.union_all([*strips, *crumbs]))
-    if narrow.area > 0:
-        patches.append(blockers.patch(narrow, Reason.DISC, narrow=True))
-    return tuple(patches)
+    blockers = _Blockers(found.plan)
+    whole = _Regions(found.plan.free_region(), region_of(aoi.outlines), region_of(upper.outlines))
+    pieces: list[_Piece] = []
+    narrow: list[Patch] = []
+    row_cuts = cuts(found.lattice.n_rows)
+    for number, cut in enumerate(row_cuts, start=1):
+        row = _TileRow.of(found, cut, whole)
+        for of_tile, strips in run_threads(row.left_over, len(row.tiles)):
+            pieces += of_tile
+            if strips.area > 0:
+                narrow.append(blockers.patch(strips, Reason.DISC, narrow=True))
+        if progress is not None:
+            progress(number / len(row_cuts))
+    patches = [blockers.patch(region, reason) for reason, region in _joined(pieces)]
+    return (*sorted(patches, key=_largest_first), *sorted(narrow, key=_largest_first))
 
 
-def _split(
-    part: Polygon, covered: dict[Reason, Region], step_mm: float
+class _Piece(NamedTuple):
+    """A piece of a patch, and whether it ends at a seam of its tile."""
+
+    reason: Reason
+    region: Polygon
+    at_seam: bool
+
+
+class _Regions(NamedTuple):
+    """The free floor, the area of interest, and the area disc-connected with the start."""
+
+    free: Region
+    aoi: Region
+    upper: Region
+
+    def within(self, bounds_mm: Bounds) -> "_Regions":
+        """What of them is in a rectangle."""
+        return _Regions(*(clipped(region, bounds_mm) for region in self))
+
+
+@dataclass(frozen=True, slots=True)
+class _TileRow:
+    """A row of tiles, and what is needed to tell what is left over in each.
+
+    Attributes:
+        found: The search.
+        tiles: From left to right.
+        rows: Of the lattice, all whose discs come near these tiles.
+        fitting: See `_fitting_nodes`, of these rows.
+        regions: Those of the floor near these tiles.
+    """
+
+    found: Search
+    tiles: list[Tile]
+    rows: slice
+    fitting: dict[Reason, Nodes]
+    regions: _Regions
+
+    @classmethod
+    def of(cls, found: Search, cut: slice, whole: _Regions) -> "_TileRow":
+        """The tiles over some rows of the lattice."""
+        tiles = Tile.row(found.lattice, cut)
+        # what a tile takes of the regions then costs as much as the row is long, not the floor
+        left, bottom, _, _ = tiles[0].around_mm
+        _, _, right, top = tiles[-1].around_mm
+        rows, _ = tiles[0].nodes(found.lattice, found.robot.disc_radius_mm)
+        regions = whole.within((left, bottom, right, top))
+        return cls(found, tiles, rows, _fitting_nodes(found, rows), regions)
+
+    def left_over(self, k: int) -> tuple[list[_Piece], Region]:
+        """What is left over in a tile: pieces of patches, and strips with crumbs."""
+        tile, step_mm = self.tiles[k], self.found.lattice.step_mm
+        free, aoi, upper = self.regions.within(tile.around_mm)
+        rest = as_region(free.difference(aoi))
+        broad, strips = _opened(rest, NARROW_CELLS * step_mm)
+        broad, strips = clipped(broad, tile.bounds_mm), clipped(strips, tile.bounds_mm)
+        wider = {} if broad.is_empty else self._fitted(tile) | {Reason.PATH: upper}
+        pieces = list(_by_reason(polygons_in([broad]), wider, step_mm))
+        large = [
+            _Piece(reason, piece, tile.ends(piece))
+            for reason, piece in pieces
+            if piece.area >= step_mm**2
+        ]
+        crumbs = [piece for _, piece in pieces if piece.area < step_mm**2]
+        return large, as_region(shapely.union_all([strips, *crumbs])) if crumbs else strips
+
+    def _fitted(self, tile: Tile) -> dict[Reason, Region]:
+        """What the disc covers near a tile from the nodes that fit."""
+        lattice, disc_mm = self.found.lattice, self.found.robot.disc_radius_mm
+        _, columns = tile.nodes(lattice, disc_mm)
+        window = lattice.window(self.rows, columns)
+        return {
+            reason: region_of(outlines_of(nodes.window(EVERY_ROW, columns), window, disc_mm))
+            for reason, nodes in self.fitting.items()
+        }
+
+
+def _fitting_nodes(found: Search, rows: slice) -> dict[Reason, Nodes]:
+    """Nodes of some rows at which the disc, the disc and the arm, or any pose touches nothing.
+
+    What the disc covers from them holds what is left over for the reason each stands at, and for
+    all that come after it.
+    """
+    engine, lattice = found.engine.band(rows), found.lattice
+    capsules = (~engine.blocked(found.robot.capsule(arm)) for arm in lattice.directions())
+    return {
+        Reason.ARM: Nodes(~engine.blocked(found.robot.disc()), lattice.n_columns),
+        Reason.VEHICLE: Nodes(reduce(np.bitwise_or, capsules), lattice.n_columns),
+        Reason.ZONE: Nodes(found.free.words[rows], lattice.n_columns),
+    }
+
+
+def _opened(region: Region, width_mm: float) -> tuple[Region, Region]:
+    """A region's parts broader than a width, and all the rest of it."""
+    shrunk = region.buffer(-width_mm / 2, join_style="mitre")
+    grown = shrunk.buffer(width_mm / 2 + APART_MM, join_style="mitre")
+    return as_region(region.intersection(grown)), as_region(region.difference(grown))
+
+
+def _by_reason(
+    parts: list[Polygon], wider: dict[Reason, Region], step_mm: float
 ) -> Iterator[tuple[Reason, Polygon]]:
-    """The pieces of a part by their reasons.
+    """The pieces of parts of what is left over, by their reasons.
 
     Outlines of nested areas run along each other, a rounding apart: pieces narrower than a cell
     go to the reason that most of the part has.
+
+    Args:
+        parts: All are looked at together, which costs less than one by one.
+        wider: For each reason but the first the area that holds what is left over for that
+            reason and for all that come after it.
+        step_mm: Side of a cell.
     """
-    by_reason: dict[Reason, Region] = {}
-    inside: Region = part
-    for order, (reason, next_reason) in enumerate(pairwise(Reason), start=1):
+    inside = np.array(parts, dtype=object)
+    bounds_mm = shapely.bounds(inside)
+    shares = np.full((len(Reason), inside.size), Polygon(), dtype=object)
+    asked = np.arange(inside.size)
+    for order, next_reason in enumerate(list(Reason)[1:]):
+        # overlays of all that is near would cost its whole length
+        near = [clipped(wider[next_reason], grown(bounds_mm[k], APART_MM)) for k in asked]
         # each area holds the next: where one is met by rounding only, so are all after it
-        near = as_region(_clipped(covered[next_reason], part).buffer(-APART_MM * order))
-        still = as_region(inside.intersection(near))
-        if still.area < step_mm**2:
-            by_reason[reason] = inside
-            break
-        by_reason[reason] = as_region(inside.difference(near))
-        inside = still
-    else:
-        by_reason[Reason.PATH] = inside
-    most = max(by_reason, key=lambda reason: by_reason[reason].area)
-    others = [
-        (reason, piece)
-        for reason, region in by_reason.items()
-        if reason is not most
-        for piece in polygons_in([region])
-        if piece.area >= step_mm**2 and not piece.buffer(-step_mm / 2).is_empty
-    ]
-    yield from others
-    left = part.difference(shapely.union_all([piece for _, piece in others])) if others else part
-    yield from ((most, piece) for piece in polygons_in([left]))
+        apart = shapely.buffer(np.array(near, dtype=object), -APART_MM * (order + 1))
+        still = shapely.intersection(inside[asked], apart)
+        goes_on = shapely.area(still) >= step_mm**2
+        shares[order, asked] = inside[asked]
+        asked, still, apart = asked[goes_on], still[goes_on], apart[goes_on]
+        shares[order, asked] = shapely.difference(inside[asked], apart)
+        inside[asked] = still
+    shares[-1, asked] = inside[asked]
+    most = shapely.area(shares).argmax(axis=0)
+    for part, share, main in zip(parts, shares.T, most.tolist(), strict=True):
+        others = [
+            (reason, piece)
+            for order, reason in enumerate(Reason)
+            if order != main
+            for piece in polygons_in([share[order]])
+            if piece.area >= step_mm**2 and not piece.buffer(-step_mm / 2).is_empty
+        ]
+        yield from others
+        rest = (
+            part.difference(shapely.union_all([piece for _, piece in others])) if others else part
+        )
+        yield from ((list(Reason)[main], piece) for piece in polygons_in([rest]))
+
+
+def _joined(pieces: list[_Piece]) -> Iterator[tuple[Reason, Polygon]]:
+    """The patches that pieces make once those of a reason are joined across the seams."""
+    for reason in Reason:
+        own = [piece for piece in pieces if piece.reason is reason]
+        yield from ((reason, piece.region) for piece in own if not piece.at_seam)
+        at_seams = shapely.union_all([piece.region for piece in own if piece.at_seam])
+        yield from ((reason, region) for region in polygons_in([at_seams]))
+
+
+def _largest_first(patch: Patch) -> tuple[float, tuple[float, float]]:
+    """Sorting key of a patch."""
+    return -patch.area_mm2, patch.label_mm
 
 
 class _Blockers:
@@ -192,24 +296,3 @@ class _Blockers:
         if self._edge.distance(point) < distance_mm[0]:
             return None
         return self._obstacles[int(index.min())]
-
-
-def _region(aoi: Aoi) -> Region:
-    """The area as polygons of its own size."""
-    parts = MultiPolygon([outline.equal_area_polygon(SAGITTA_MM) for outline in aoi.outlines])
-    # parts that touch may overlap by a rounding once their arcs are polygons
-    return parts if parts.is_valid else as_region(shapely.union_all(parts.geoms))
-
-
-def _clipped(region: Region, part: Polygon) -> Region:
-    """A region as far as a part can meet it: overlays of the whole would cost its whole length."""
-    left, bottom, right, top = part.bounds
-    near = shapely.clip_by_rect(region, left - 1.0, bottom - 1.0, right + 1.0, top + 1.0)
-    return as_region(near if near.is_valid else shapely.make_valid(near))
-
-
-def _opened(region: Region, width_mm: float) -> Region:
-    """What is left of a region without its parts narrower than a width."""
-    shrunk = region.buffer(-width_mm / 2, join_style="mitre")
-    grown = shrunk.buffer(width_mm / 2 + APART_MM, join_style="mitre")
-    return as_region(grown.intersection(region))

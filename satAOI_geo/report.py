@@ -114,7 +114,7 @@ class FloorFigures:
             source=plan.floor_source,
             obstacle_area_m2=obstacle_mm2 / MM2_PER_M2,
             obstacle_percent=100 * obstacle_mm2 / plan.floor.area,
-            free_area_m2=plan.free_region().area / MM2_PER_M2,
+            free_area_m2=(plan.floor.area - obstacle_mm2) / MM2_PER_M2,
             n_obstacles=len(plan.obstacles),
         )
 

@@ -2,7 +2,7 @@
 
 import heapq
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final, Protocol
 
@@ -10,7 +10,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from satAOI_geo.aoi import Aoi, area
+from satAOI_geo.aoi import Aoi, areas
 from satAOI_geo.discs import covered_cells
 from satAOI_geo.lattice import WORD_BITS, Lattice
 from satAOI_geo.nodes import Nodes
@@ -19,6 +19,10 @@ from satAOI_geo.reach import PoseComponents, State
 
 ZONE_MM2: Final = 500_000.0
 """Smaller zones are not worth a set-down: half a square metre is little more than one disc."""
+
+
+BATCH_NODES: Final = 2**22
+"""Of a window for several zones: half a megabyte of bits."""
 
 
 class Components(Protocol):
@@ -77,17 +81,31 @@ def largest(components: Components, labels: Iterable[int], lattice: Lattice, dis
     return best_label
 
 
-def zones(components: PoseComponents, lattice: Lattice, disc_mm: float) -> tuple[Zone, ...]:
+def zones(
+    components: PoseComponents,
+    lattice: Lattice,
+    disc_mm: float,
+    progress: Callable[[float], None] | None = None,
+) -> tuple[Zone, ...]:
     """All components of at least `ZONE_MM2`, the largest raster area first."""
     found = []
     bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
-    for label in np.flatnonzero(bounds_mm2 >= ZONE_MM2).tolist():
-        rows, columns = _window(components.boxes[label], lattice, disc_mm)
-        nodes = components.nodes(label, rows, columns)
-        aoi = area(nodes, lattice.window(rows, columns), disc_mm)
-        if aoi.area_mm2 >= ZONE_MM2:
-            state = set_down(components, label)
-            found.append(Zone(label, nodes.count(), aoi, state))
+    labels = np.flatnonzero(bounds_mm2 >= ZONE_MM2)
+    # the widest first, so that windows of a size make a batch
+    labels = labels[np.argsort(-np.ptp(components.boxes[labels, 1::2], axis=1), kind="stable")]
+    n_done = 0
+    for batch in _batches(components.boxes, labels):
+        windows = [_window(components.boxes[label], lattice, disc_mm) for label in batch]
+        sets = [
+            components.nodes(label, *window) for label, window in zip(batch, windows, strict=True)
+        ]
+        covered = areas(sets, [lattice.window(*window) for window in windows], disc_mm)
+        for label, nodes, aoi in zip(batch, sets, covered, strict=True):
+            if aoi.area_mm2 >= ZONE_MM2:
+                found.append(Zone(label, nodes.count(), aoi, set_down(components, label)))
+        n_done += len(batch)
+        if progress is not None:
+            progress(n_done / labels.size)
     return tuple(sorted(found, key=lambda zone: (-zone.aoi.raster_area_mm2, zone.label)))
 
 
@@ -108,7 +126,12 @@ def set_downs(
         best, label, fresh = heapq.heappop(queue)
         rows, columns = _window(components.boxes[label], lattice, disc_mm)
         here = todo[rows, columns.start // WORD_BITS : -(-columns.stop // WORD_BITS)]
-        if not here.any():
+        # no more than is left to cover in its window: cheaper to count than what it covers
+        left_mm2 = float(np.bitwise_count(here).sum()) * lattice.step_mm**2
+        if left_mm2 == 0.0:
+            continue
+        if left_mm2 < -best:
+            heapq.heappush(queue, (-left_mm2, label, False))
             continue
         nodes = components.nodes(label, rows, columns)
         gained = covered_cells(nodes, disc_mm / lattice.step_mm).words & here
@@ -121,6 +144,21 @@ def set_downs(
         else:
             heapq.heappush(queue, (-gain_mm2, label, True))
     return tuple(chosen)
+
+
+def _batches(boxes: npt.NDArray[np.int64], labels: npt.NDArray[np.int64]) -> Iterator[list[int]]:
+    """Sets whose windows, one above the other, are not too large; a large set has its own."""
+    batch: list[int] = []
+    n_rows = n_columns = 0
+    for label in labels.tolist():
+        height, width = (boxes[label, 2:] - boxes[label, :2] + 1).tolist()
+        if batch and (n_rows + height) * max(n_columns, width) > BATCH_NODES:
+            yield batch
+            batch, n_rows, n_columns = [], 0, 0
+        batch.append(label)
+        n_rows, n_columns = n_rows + height, max(n_columns, width)
+    if batch:
+        yield batch
 
 
 def set_down(components: PoseComponents, label: int) -> State:
@@ -172,16 +210,6 @@ def _area_bounds_mm2(
 
 
 def _window(box: npt.NDArray[np.int64], lattice: Lattice, disc_mm: float) -> tuple[slice, slice]:
-    """Rows and columns that hold a box of nodes and all that the disc covers from them.
-
-    The columns begin and end with a word, or with the lattice.
-    """
-    pad = math.ceil(disc_mm / lattice.step_mm)
-    left, beyond = max(0, int(box[1]) - pad), int(box[3]) + pad + 1
-    return (
-        slice(max(0, int(box[0]) - pad), min(lattice.n_rows, int(box[2]) + pad + 1)),
-        slice(
-            left // WORD_BITS * WORD_BITS,
-            min(lattice.n_columns, -(-beyond // WORD_BITS) * WORD_BITS),
-        ),
-    )
+    """Rows and columns that hold a box of nodes and all that the disc covers from them."""
+    low, left, high, right = box.tolist()
+    return lattice.around(slice(low, high + 1), slice(left, right + 1), disc_mm)

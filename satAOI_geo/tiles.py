@@ -1,0 +1,104 @@
+"""A floor cut into tiles, so that polygons are overlaid piece by piece.
+
+What an overlay of polygons takes grows with all of their corners: time a little more than in
+proportion, and memory by a kilobyte a corner. The tiles are the same whatever the memory.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+import shapely
+from shapely.geometry import MultiPolygon
+
+from satAOI_geo.aoi import Outline
+from satAOI_geo.lattice import Lattice
+from satAOI_geo.plan import Region, as_region
+
+TILE_CELLS: Final = 2048
+"""Side of a tile: 20 m at a step of 10 mm, which most floors of flats and halls fit into."""
+
+MARGIN_CELLS: Final = 16
+"""By how much more than the tile is looked at: what is asked of a place depends on no more."""
+
+SAGITTA_MM: Final = 0.01
+"""How far the polygons may leave the arcs of the area of interest."""
+
+Bounds: TypeAlias = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Tile:
+    """A rectangle of cells.
+
+    Attributes:
+        rows: Of the lattice.
+        columns: Of the lattice.
+        bounds_mm: Left, bottom, right and top. At the edge of the floor a tile reaches a cell
+            beyond it, so that only what ends at a seam touches them.
+        around_mm: The same with a margin.
+    """
+
+    rows: slice
+    columns: slice
+    bounds_mm: Bounds
+    around_mm: Bounds
+
+    @classmethod
+    def row(cls, lattice: Lattice, rows: slice) -> list["Tile"]:
+        """The tiles over some rows of a lattice, from left to right."""
+        return [cls.of(lattice, rows, columns) for columns in cuts(lattice.n_columns)]
+
+    @classmethod
+    def of(cls, lattice: Lattice, rows: slice, columns: slice) -> "Tile":
+        """The tile over some rows and columns of a lattice."""
+        step_mm, (x_mm, y_mm) = lattice.step_mm, lattice.origin_mm
+        left, right = _sides(columns, lattice.n_columns)
+        bottom, top = _sides(rows, lattice.n_rows)
+        bounds_mm = (
+            x_mm + left * step_mm,
+            y_mm + bottom * step_mm,
+            x_mm + right * step_mm,
+            y_mm + top * step_mm,
+        )
+        return cls(rows, columns, bounds_mm, grown(bounds_mm, MARGIN_CELLS * step_mm))
+
+    def nodes(self, lattice: Lattice, disc_mm: float) -> tuple[slice, slice]:
+        """Rows and columns of all nodes from which a disc comes near."""
+        return lattice.around(self.rows, self.columns, disc_mm + MARGIN_CELLS * lattice.step_mm)
+
+    def ends(self, region: Region) -> bool:
+        """Whether a region cut to this tile reaches a seam."""
+        left, bottom, right, top = region.bounds
+        own = self.bounds_mm
+        return bool(left <= own[0] or bottom <= own[1] or right >= own[2] or top >= own[3])
+
+
+def cuts(n_cells: int) -> list[slice]:
+    """Rows or columns of the tiles of a lattice that has so many."""
+    return [slice(k, min(k + TILE_CELLS, n_cells)) for k in range(0, n_cells, TILE_CELLS)]
+
+
+def grown(bounds_mm: Bounds, by_mm: float) -> Bounds:
+    """A rectangle and what is beside it."""
+    left, bottom, right, top = bounds_mm
+    return left - by_mm, bottom - by_mm, right + by_mm, top + by_mm
+
+
+def clipped(region: Region, bounds_mm: Bounds) -> Region:
+    """The part of a region in a rectangle; it costs as much as the region is long."""
+    inside = shapely.clip_by_rect(region, *bounds_mm)
+    return as_region(inside if inside.is_valid else shapely.make_valid(inside))
+
+
+def region_of(outlines: Sequence[Outline]) -> Region:
+    """The area in some outlines as polygons of its own size."""
+    parts = MultiPolygon([outline.equal_area_polygon(SAGITTA_MM) for outline in outlines])
+    # parts that touch may overlap by a rounding once their arcs are polygons
+    return parts if parts.is_valid else as_region(shapely.union_all(parts.geoms))
+
+
+def _sides(cells: slice, n_cells: int) -> tuple[int, int]:
+    """Where a tile begins and ends along one axis, in cells; a cell farther at the floor's edge."""
+    begin, end = cells.start, cells.stop
+    return begin - (begin == 0), end + (end == n_cells)
