@@ -46,6 +46,22 @@ def test_help_starts_none_of_the_heavy_libraries() -> None:
     assert done.stdout.splitlines()[-1] == "loaded:"
 
 
+def test_a_run_loads_nothing_that_only_other_plans_robots_and_outputs_need(room: Path) -> None:
+    others = ("pydantic", "ifcopenshell", "trimesh", "PIL", "rich.progress", "distributed")
+    code = (
+        f"import sys; from satAOI_geo.cli import main; main([{str(room)!r}, '--quiet']); "
+        f"print('loaded:', *(name for name in {others} if name in sys.modules))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", f"import sys; sys.path[:0] = ['.', 'adapters']; {code}"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.splitlines()[-1] == "loaded:"
+
+
 @pytest.mark.parametrize(("command", "option"), OPTIONS)
 def test_every_option_has_help_and_where_it_takes_a_value_an_example(
     command: click.Command, option: click.Option

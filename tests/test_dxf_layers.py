@@ -1,10 +1,11 @@
 """What layer names mean, and what a user's own file changes about it."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from satAOI_adapters.layers import Certainty, Meaning, layer_table
+from satAOI_adapters.layers import BUILT_IN, Certainty, Meaning, layer_table
 from satAOI_geo.errors import InputError
 
 
@@ -53,6 +54,12 @@ def test_whole_name_is_surer_than_a_part_of_it() -> None:
     assert table.of_layer("WALL").certainty is Certainty.CERTAIN
     assert table.of_layer("A-WALL-FULL").certainty is Certainty.LIKELY
     assert table.of_layer("XYZ").certainty is Certainty.UNKNOWN
+
+
+def test_the_built_in_table_is_a_file_that_a_user_could_give() -> None:
+    built_in, twice = layer_table(), layer_table(BUILT_IN)
+    assert [replace(rule, given=False) for rule in twice.layers] == 2 * [*built_in.layers]
+    assert [replace(rule, given=False) for rule in twice.blocks] == 2 * [*built_in.blocks]
 
 
 def own(tmp_path: Path, text: str) -> Path:

@@ -6,7 +6,7 @@ the same form goes before it, or takes its place with `replace = true`.
 
 import re
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from fnmatch import fnmatchcase
@@ -14,9 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from pydantic import BaseModel, ConfigDict
-
-from satAOI_adapters.settings_read import read_settings
+from satAOI_adapters.settings_read import keys_of, read_settings
 from satAOI_geo.plan import Kind
 
 if TYPE_CHECKING:
@@ -123,16 +121,6 @@ class LayerMap:
     is_own: bool
 
 
-class LayersFile(BaseModel):
-    """A TOML file of layer patterns: kinds in order of precedence, each with its patterns."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=False)
-
-    replace: bool = False
-    layers: dict[Meaning, list[str]] = {}
-    blocks: dict[Meaning, list[str]] = {}
-
-
 @dataclass(frozen=True, slots=True)
 class Rule:
     """Patterns of one meaning; a name must match one of `patterns` and none of `exceptions`."""
@@ -190,8 +178,11 @@ def layer_table(own: Path | None = None) -> LayerTable:
     built_in = _built_in()
     if own is None:
         return built_in
-    file = _read(own)
-    layers, blocks = _rules(file.layers, given=True), _rules(file.blocks, given=True)
+    from satAOI_adapters.layers_file import LayersFile
+
+    file = read_settings(own, LayersFile, what="layer file", complaint=_complaint)
+    layers = _rules(file.layers.items(), given=True)
+    blocks = _rules(file.blocks.items(), given=True)
     if file.replace:
         return LayerTable(layers, blocks, is_own=True)
     return LayerTable(layers + built_in.layers, blocks + built_in.blocks)
@@ -204,12 +195,11 @@ def without_xref_prefix(name: str) -> str:
 
 @cache
 def _built_in() -> LayerTable:
-    file = _read(BUILT_IN)
-    return LayerTable(_rules(file.layers, given=False), _rules(file.blocks, given=False))
-
-
-def _read(path: Path) -> LayersFile:
-    return read_settings(path, LayersFile, what="layer file", complaint=_complaint)
+    # our own file fits the schema of everybody's; a test holds it to that
+    keys = keys_of(BUILT_IN, what="layer file")
+    return LayerTable(
+        _rules(keys["layers"].items(), given=False), _rules(keys["blocks"].items(), given=False)
+    )
 
 
 def _complaint(key: str, fault: "ErrorDetails") -> str:
@@ -221,15 +211,15 @@ def _complaint(key: str, fault: "ErrorDetails") -> str:
     return f"'{key}' is {fault['input']!r}; give true or false"
 
 
-def _rules(table: Mapping[Meaning, list[str]], *, given: bool) -> tuple[Rule, ...]:
+def _rules(table: Iterable[tuple[str, list[str]]], *, given: bool) -> tuple[Rule, ...]:
     return tuple(
         Rule(
-            meaning,
+            Meaning(meaning),
             tuple(pattern for pattern in patterns if not pattern.startswith("!")),
             tuple(pattern[1:] for pattern in patterns if pattern.startswith("!")),
             given,
         )
-        for meaning, patterns in table.items()
+        for meaning, patterns in table
     )
 
 

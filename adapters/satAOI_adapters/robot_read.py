@@ -14,42 +14,12 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pydantic import BaseModel, ConfigDict, Field
-
 from satAOI_adapters.settings_read import read_settings, toml_string
 from satAOI_geo.errors import InputError, RobotError
 from satAOI_geo.robot import ROBOTS, Robot
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
-
-
-class RobotFile(BaseModel):
-    """The keys of a robot's file. No key is guessed and none is ignored."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
-
-    name: str = Field("", max_length=100)
-    vehicle_length_mm: float
-    vehicle_width_mm: float
-    pivot_offset_mm: float
-    arm_length_mm: float
-    disc_radius_mm: float
-    swing_min_deg: float = -90.0
-    swing_max_deg: float = 90.0
-
-    def robot(self, *, unnamed: str) -> Robot:
-        """The robot these measures describe; `unnamed` is its name where the file gives none."""
-        return Robot(
-            name=self.name or unnamed,
-            vehicle_length_mm=self.vehicle_length_mm,
-            vehicle_width_mm=self.vehicle_width_mm,
-            pivot_offset_mm=self.pivot_offset_mm,
-            arm_length_mm=self.arm_length_mm,
-            disc_radius_mm=self.disc_radius_mm,
-            swing_min_rad=math.radians(self.swing_min_deg),
-            swing_max_rad=math.radians(self.swing_max_deg),
-        )
 
 
 def robot_from(name_or_file: str) -> Robot:
@@ -76,6 +46,8 @@ def read(path: Path) -> Robot:
         InputError: If the file cannot be read, is not TOML, or lacks or misspells a key.
         RobotError: If its measures contradict each other.
     """
+    from satAOI_adapters.robot_file import RobotFile
+
     file = read_settings(path, RobotFile, what="robot file", complaint=_complaint)
     try:
         return file.robot(unnamed=path.stem)

@@ -1,19 +1,22 @@
-"""Settings files in TOML: read whole, checked key by key, a fault told in one line."""
+"""Settings files in TOML: read whole, checked key by key, a fault told in one line.
+
+Pydantic, which checks them, takes longer to load than a small drawing to read: it is imported
+when somebody's own file comes up.
+"""
 
 import json
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
-
-from pydantic import BaseModel, ValidationError
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from satAOI_geo.errors import InputError
 
 if TYPE_CHECKING:
+    from pydantic import BaseModel, ValidationError
     from pydantic_core import ErrorDetails
 
-FileT = TypeVar("FileT", bound=BaseModel)
+FileT = TypeVar("FileT", bound="BaseModel")
 
 
 def read_settings(
@@ -31,22 +34,33 @@ def read_settings(
     Raises:
         InputError: If the file cannot be read, is not TOML, or does not fit the model.
     """
-    try:
-        with path.open("rb") as stream:
-            keys = tomllib.load(stream)
-    except OSError as error:
-        raise InputError(f"{what} '{path}': {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise InputError(f"{what} '{path}' is not TOML: {error}") from error
+    from pydantic import ValidationError
+
+    keys = keys_of(path, what=what)
     try:
         return model.model_validate(keys)
     except ValidationError as error:
         raise InputError(f"{what} '{path}': {_first_fault(error, model, complaint)}") from error
 
 
+def keys_of(path: Path, *, what: str) -> dict[str, Any]:
+    """The keys of a TOML file, unchecked; arguments as for `read_settings`.
+
+    Raises:
+        InputError: If the file cannot be read or is not TOML.
+    """
+    try:
+        with path.open("rb") as stream:
+            return tomllib.load(stream)
+    except OSError as error:
+        raise InputError(f"{what} '{path}': {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise InputError(f"{what} '{path}' is not TOML: {error}") from error
+
+
 def _first_fault(
-    error: ValidationError,
-    model: type[BaseModel],
+    error: "ValidationError",
+    model: "type[BaseModel]",
     complaint: Callable[[str, "ErrorDetails"], str],
 ) -> str:
     """One key at fault and what is wrong with it, in one line."""

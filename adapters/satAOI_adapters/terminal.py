@@ -7,6 +7,8 @@ from itertools import groupby
 from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from satAOI_geo.plan import Finding
 
 TOLD_OF_A_SORT = 3
@@ -78,16 +80,25 @@ def write_table(rows: Sequence[Sequence[str]], stream: TextIO) -> None:
         stream.write("  ".join(cells).rstrip() + "\n")
 
 
+def _watched(*, quiet: bool) -> "Console | None":
+    """Standard error where somebody sees a bar move there, else None."""
+    if quiet:
+        return None
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    return console if console.is_terminal else None
+
+
 @contextmanager
 def progress(*, quiet: bool) -> Iterator[Callable[[str, float], None] | None]:
     """A progress bar on a terminal, None elsewhere; it is gone when the work is done."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    console = Console(stderr=True)
-    if quiet or not console.is_terminal:
+    console = _watched(quiet=quiet)
+    if console is None:
         yield None
         return
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task("", total=1.0)
