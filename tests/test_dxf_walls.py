@@ -330,7 +330,7 @@ def test_courtyard_arc_wall_is_filled_between_its_faces(tmp_path: Path) -> None:
     assert 0 <= wall_mm2 - ring_mm2 < 0.02 * math.pi * 3200
 
 
-@pytest.mark.parametrize("leaf", ["line", "rectangle"])
+@pytest.mark.parametrize("leaf", ["line", "rectangle", "four lines"])
 def test_door_drawn_among_walls_is_left_out_and_the_walls_stay(leaf: str, tmp_path: Path) -> None:
     document = house(opening_mm=900.0)
     space = document.modelspace()
@@ -339,8 +339,10 @@ def test_door_drawn_among_walls_is_left_out_and_the_walls_stay(leaf: str, tmp_pa
     space.add_arc((2000, 200), 900, 0, 90, dxfattribs=on)
     if leaf == "line":
         space.add_line((2000, 200), (2000, 1100), dxfattribs=on)
-    else:
+    elif leaf == "rectangle":
         rectangle(space, 2000, 200, 2040, 1100, layer="WALL")
+    else:
+        lines(space, [(2000, 200), (2040, 200), (2040, 1100), (2000, 1100)], layer="WALL")
     plan = plan_of(document, tmp_path)
     assert [o.shape for o in plan.obstacles] == [o.shape for o in bare.obstacles]
     assert "door-among-walls" in codes(plan)

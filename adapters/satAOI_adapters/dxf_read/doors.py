@@ -9,7 +9,7 @@ import math
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import shapely
@@ -23,6 +23,9 @@ from satAOI_adapters.dxf_read.groups import linked, tree_of
 from satAOI_adapters.dxf_read.linework import PARALLEL
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_geo.plan import BoolArray, Finding, FloatArray
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 JAMB_MM: Final = 300.0
 """A line that ends this close to walls on both sides spans the opening between them."""
@@ -94,8 +97,9 @@ def as_lines(pieces: Sequence[Feature]) -> list[LineString]:
 def without_swings(features: Sequence[Feature]) -> tuple[list[Feature], int]:
     """Features less the doors drawn among them, and how many doors these are.
 
-    A door is an arc with a straight leaf from its centre to it. With the two goes
-    whatever else of the same paths lies within the door's circle: the other side of the leaf.
+    A door is an arc with a straight leaf from its centre to it. With the two go the short lines
+    that join the sides of a leaf, and whatever else of the same paths lies within the door's
+    circle: the other side of the leaf.
     """
     arcs = [
         piece
@@ -120,7 +124,7 @@ def without_swings(features: Sequence[Feature]) -> tuple[list[Feature], int]:
         near = [lines[i // 2] for i in tree.query_ball_point(arc.centre, LEAF_SLACK_MM)]
         leaves = [line for line in near if _is_leaf(line, arc)]
         n_doors += bool(leaves)
-        for piece in (arc, *leaves) if leaves else ():
+        for piece in (arc, *leaves, *_caps(leaves, lines, tree)) if leaves else ():
             doors_of[id(piece)].append(arc)
     kept = []
     for feature in features:
@@ -128,6 +132,20 @@ def without_swings(features: Sequence[Feature]) -> tuple[list[Feature], int]:
         if paths:
             kept.append(replace(feature, paths=paths))
     return kept, n_doors
+
+
+def _caps(leaves: Sequence[Line], lines: Sequence[Line], tree: "cKDTree") -> list[Line]:
+    """The short lines that run from a leaf's one side to its other.
+
+    Args:
+        leaves: The sides of a door's leaf.
+        lines: All lines, of which they are some.
+        tree: The ends of all lines, two a line.
+    """
+    ends = [end for leaf in leaves for end in (leaf.start, leaf.end)]
+    touched = {i for end in ends for i in tree.query_ball_point(end, CLOSE_GAPS_MM)}
+    joining = [lines[i // 2] for i in touched if i % 2 == 0 and i + 1 in touched]
+    return [line for line in joining if math.dist(line.start, line.end) <= LEAF_SLACK_MM]
 
 
 def _draws_door(path: Path, doors_of: Mapping[int, Sequence[Arc]]) -> bool:
