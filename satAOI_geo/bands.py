@@ -120,11 +120,11 @@ def all_explored(
 def explored(task: BandTask, watch: Stopwatch | None = None) -> Explored:
     """Search a band; the stages of the watch stand for all that is to be done."""
     watch = watch or Stopwatch()
-    with watch.stage("free space"):
-        space = free_space(task.engine, task.robot, task.lattice, watch.share)
+    with watch.stage("free space") as share:
+        space = free_space(task.engine, task.robot, task.lattice, share)
         n_states = space.n_states(slice(task.n_own))
-    with watch.stage("reach"):
-        band = Band.of(task.engine, task.robot, space, watch.share)
+    with watch.stage("reach") as share:
+        band = Band.of(task.engine, task.robot, space, share)
     return Explored(space.free_nodes(), n_states, band)
 
 
@@ -140,10 +140,10 @@ def _by_crew(
     tasks: Sequence[BandTask], crew: Crew, watch: Stopwatch
 ) -> Iterator[tuple[int, Explored]]:
     """What is found in each band, with its number, in whatever order it comes."""
-    with watch.stage("search by workers"):
+    with watch.stage("search by workers") as share:
         for n_done, outcome in enumerate(crew.outcomes(explored, tasks), start=1):
             yield outcome.number, outcome.value()
-            watch.share(n_done / len(tasks))
+            share(n_done / len(tasks))
 
 
 def _cuts(lattice: Lattice, memory_gb: float, n_bands: int) -> Iterator[tuple[slice, int]]:

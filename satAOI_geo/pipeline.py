@@ -1,5 +1,6 @@
 """The program on half a page: plan → free space → reached set → area → reasons → figures."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from satAOI_geo.aoi import Aoi, area
@@ -12,7 +13,7 @@ from satAOI_geo.reasons import Patch, unreached
 from satAOI_geo.report import Report, report_of
 from satAOI_geo.robot import PROTOTYPE, Robot
 from satAOI_geo.search import Search, search
-from satAOI_geo.settings import DEFAULTS, Settings
+from satAOI_geo.settings import DEFAULTS, Connectivity, Settings
 from satAOI_geo.start import StartMark
 from satAOI_geo.zones import SetDown, Zone, set_downs, zones
 
@@ -90,30 +91,44 @@ def area_of_interest(
     found = search(plan, robot, settings, start=start, watch=watch, crew=crew)
     lattice, disc_mm = found.lattice, robot.disc_radius_mm
     with watch.stage("area"):
-        nodes = {
-            "disc": found.disc.nodes(found.start.disc_label),
-            "pose": found.pose.nodes(found.start.pose_label),
-        }
-        exact = settings.exact_outline
-        rules = list(nodes)
-        covered = run_threads(
-            lambda k: area(nodes[rules[k]], lattice, disc_mm, exact=exact), len(rules)
-        )
-        areas = dict(zip(rules, covered, strict=True))
-    with watch.stage("zones"):
-        all_zones = zones(found.pose, lattice, disc_mm, watch.share)
-        downs = set_downs(found.pose, found.free, lattice, disc_mm)
-    with watch.stage("reasons"):
-        patches = unreached(found, areas[settings.connectivity], areas["disc"], watch.share)
+        areas = _areas(found)
+    aoi, upper = areas[settings.connectivity], areas["disc"]
+    # its outline would be another one than that of the others
+    known = {} if settings.exact_outline else {found.start.pose_label: areas["pose"]}
+
+    def of_zones() -> tuple[tuple[Zone, ...], tuple[SetDown, ...]]:
+        with watch.stage("zones") as share:
+            of_components = zones(found.pose, lattice, disc_mm, known, share)
+            return of_components, set_downs(found.pose, found.free, lattice, disc_mm)
+
+    def of_patches() -> tuple[Patch, ...]:
+        with watch.stage("reasons") as share:
+            return unreached(found, aoi, upper, share)
+
+    with ThreadPoolExecutor(max_workers=1) as beside:
+        waiting = beside.submit(of_patches)
+        all_zones, downs = of_zones()
+        patches = waiting.result()
     report = report_of(
         found,
-        n_nodes={rule: reached.count() for rule, reached in nodes.items()},
         areas=areas,
         zones=all_zones,
         set_downs=downs,
         patches=patches,
         timing_s=watch.timing_s,
     )
-    return Result(
-        found, areas[settings.connectivity], areas["disc"], all_zones, downs, patches, report
-    )
+    return Result(found, aoi, upper, all_zones, downs, patches, report)
+
+
+def _areas(found: Search) -> dict[Connectivity, Aoi]:
+    """What is connected with the start by either rule."""
+    start, disc_mm, exact = found.start, found.robot.disc_radius_mm, found.settings.exact_outline
+
+    def of_disc() -> Aoi:
+        return area(found.disc.nodes(start.disc_label), found.lattice, disc_mm, exact=exact)
+
+    def of_pose() -> Aoi:
+        return area(found.pose.nodes(start.pose_label), found.lattice, disc_mm, exact=exact)
+
+    disc, pose = run_threads(lambda k: (of_disc, of_pose)[k](), 2)
+    return {"disc": disc, "pose": pose}

@@ -18,7 +18,6 @@ class Stopwatch:
 
     def __init__(self, progress: Progress | None = None) -> None:
         self._progress = progress
-        self._stage = ""
         self._shares = (0.0, 1.0)
         self.timing_s: dict[str, float] = {}
 
@@ -30,18 +29,17 @@ class Stopwatch:
         self._shares = 0.0, 1.0
 
     @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        """Time what happens inside under a name."""
-        self._stage = name
-        self.share(0.0)
+    def stage(self, name: str) -> Iterator[Callable[[float], None]]:
+        """Time what happens inside under a name; what is yielded tells which share is done."""
+        begin, end = self._shares
+
+        def share(done: float) -> None:
+            if self._progress is not None:
+                self._progress(name, begin + (end - begin) * done)
+
+        share(0.0)
         begin_s = time.perf_counter()
-        yield
+        yield share
         taken_s = time.perf_counter() - begin_s
         self.timing_s[name] = self.timing_s.get(name, 0.0) + taken_s
-        self.share(1.0)
-
-    def share(self, done: float) -> None:
-        """Tell which share of what happens in the running stage is done."""
-        if self._progress is not None:
-            begin, end = self._shares
-            self._progress(self._stage, begin + (end - begin) * done)
+        share(1.0)

@@ -9,6 +9,7 @@ What lies between two of them has one reason, and all of them together are the f
 area of interest leaves over.
 """
 
+import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
@@ -24,7 +25,7 @@ from satAOI_geo.freespace import run_threads
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import FloorPlan, Obstacle, Region, as_region, polygons_in
 from satAOI_geo.search import Search
-from satAOI_geo.tiles import Bounds, Tile, clipped, cuts, grown, region_of
+from satAOI_geo.tiles import Bounds, Tile, clipped, cuts, region_of
 
 APART_MM: Final = 0.05
 """By how much outlines that run along each other are set apart before they are overlaid. Lines a
@@ -171,7 +172,9 @@ class _TileRow:
         rest = as_region(free.difference(aoi))
         broad, strips = _opened(rest, NARROW_CELLS * step_mm)
         broad, strips = clipped(broad, tile.bounds_mm), clipped(strips, tile.bounds_mm)
-        wider = {} if broad.is_empty else self._fitted(tile) | {Reason.PATH: upper}
+        if broad.is_empty:
+            return [], strips
+        wider = self._fitted(tile) | {Reason.PATH: upper}
         pieces = list(_by_reason(polygons_in([broad]), wider, step_mm))
         large = [
             _Piece(reason, piece, tile.ends(piece))
@@ -228,36 +231,41 @@ def _by_reason(
             reason and for all that come after it.
         step_mm: Side of a cell.
     """
-    inside = np.array(parts, dtype=object)
-    bounds_mm = shapely.bounds(inside)
-    shares = np.full((len(Reason), inside.size), Polygon(), dtype=object)
-    asked = np.arange(inside.size)
+    whole = np.array(parts, dtype=object)
+    inside = whole.copy()
+    # with room for the buffer; overlays of all that is near would cost its whole length
+    around = shapely.box(*(shapely.bounds(whole) + np.array((-1.0, -1.0, 1.0, 1.0))).T)
+    shares = np.full((len(Reason), whole.size), Polygon(), dtype=object)
+    asked = np.arange(whole.size)
     for order, next_reason in enumerate(list(Reason)[1:]):
-        # overlays of all that is near would cost its whole length
-        near = [clipped(wider[next_reason], grown(bounds_mm[k], APART_MM)) for k in asked]
+        near = shapely.intersection(wider[next_reason], around[asked])
         # each area holds the next: where one is met by rounding only, so are all after it
-        apart = shapely.buffer(np.array(near, dtype=object), -APART_MM * (order + 1))
-        still = shapely.intersection(inside[asked], apart)
+        near = shapely.buffer(near, -APART_MM * (order + 1))
+        still = shapely.intersection(inside[asked], near)
         goes_on = shapely.area(still) >= step_mm**2
         shares[order, asked] = inside[asked]
-        asked, still, apart = asked[goes_on], still[goes_on], apart[goes_on]
-        shares[order, asked] = shapely.difference(inside[asked], apart)
+        asked, still, near = asked[goes_on], still[goes_on], near[goes_on]
+        shares[order, asked] = shapely.difference(inside[asked], near)
         inside[asked] = still
     shares[-1, asked] = inside[asked]
     most = shapely.area(shares).argmax(axis=0)
-    for part, share, main in zip(parts, shares.T, most.tolist(), strict=True):
-        others = [
-            (reason, piece)
-            for order, reason in enumerate(Reason)
-            if order != main
-            for piece in polygons_in([share[order]])
-            if piece.area >= step_mm**2 and not piece.buffer(-step_mm / 2).is_empty
-        ]
-        yield from others
-        rest = (
-            part.difference(shapely.union_all([piece for _, piece in others])) if others else part
-        )
-        yield from ((list(Reason)[main], piece) for piece in polygons_in([rest]))
+    others = [
+        (k, reason, piece)
+        for (order, reason), k in itertools.product(enumerate(Reason), range(whole.size))
+        if order != most[k]
+        for piece in polygons_in([shares[order, k]])
+        if piece.area >= step_mm**2
+    ]
+    shrunk = shapely.buffer([piece for _, _, piece in others], -step_mm / 2)
+    elsewhere: dict[int, list[Polygon]] = {}
+    for (k, reason, piece), is_narrow in zip(others, shapely.is_empty(shrunk), strict=True):
+        if not is_narrow:
+            elsewhere.setdefault(k, []).append(piece)
+            yield reason, piece
+    for k, pieces in elsewhere.items():
+        whole[k] = whole[k].difference(shapely.union_all(pieces))
+    for region, order in zip(whole, most.tolist(), strict=True):
+        yield from ((list(Reason)[order], piece) for piece in polygons_in([region]))
 
 
 def _joined(pieces: list[_Piece]) -> Iterator[tuple[Reason, Polygon]]:

@@ -10,6 +10,7 @@ from satAOI_geo.reach import State
 from satAOI_geo.reasons import Patch
 from satAOI_geo.robot import Robot
 from satAOI_geo.search import Search
+from satAOI_geo.settings import Connectivity
 from satAOI_geo.units import MM2_PER_M2
 from satAOI_geo.zones import SetDown, Zone
 
@@ -255,16 +256,19 @@ class Report:
 def report_of(
     found: Search,
     *,
-    n_nodes: dict[str, int],
-    areas: dict[str, Aoi],
+    areas: dict[Connectivity, Aoi],
     zones: tuple[Zone, ...],
     set_downs: tuple[SetDown, ...],
     patches: tuple[Patch, ...],
     timing_s: dict[str, float],
 ) -> Report:
-    """Gather the figures of a run; n_nodes and areas are given for `disc` and `pose`."""
+    """Gather the figures of a run; areas are given for `disc` and `pose`."""
     plan, connectivity = found.plan, found.settings.connectivity
     floor = FloorFigures.of(plan)
+    n_nodes = {
+        "disc": found.disc.stretches.count(found.start.disc_label),
+        "pose": found.pose.stretches.count(found.start.pose_label),
+    }
     connected = {rule: ConnectedFigures.of(n_nodes[rule], aoi) for rule, aoi in areas.items()}
     numbers = {zone.label: number for number, zone in enumerate(zones, start=1)}
     return Report(
@@ -290,7 +294,7 @@ def report_of(
         zones=[
             ZoneFigures(
                 number=numbers[zone.label],
-                area_m2=zone.aoi.area_mm2 / MM2_PER_M2,
+                area_m2=zone.area_mm2 / MM2_PER_M2,
                 n_nodes=zone.n_nodes,
                 set_down=PoseFigures.of(found, zone.set_down),
             )

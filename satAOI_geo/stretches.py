@@ -50,6 +50,11 @@ class Stretches:
         right = np.maximum.reduceat(self.end, first)
         return np.column_stack((self.row[first], left, self.row[last], right)).astype(np.int64)
 
+    def count(self, label: int) -> int:
+        """How many nodes a set has."""
+        own = slice(self.first[label], self.first[label + 1])
+        return int((self.end[own] - self.begin[own] + 1).sum())
+
     def nodes(self, label: int, rows: range, columns: range) -> Nodes:
         """The nodes of one set in a window of the lattice that holds all of it."""
         own = slice(self.first[label], self.first[label + 1])

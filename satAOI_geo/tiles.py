@@ -86,9 +86,11 @@ def grown(bounds_mm: Bounds, by_mm: float) -> Bounds:
 
 
 def clipped(region: Region, bounds_mm: Bounds) -> Region:
-    """The part of a region in a rectangle; it costs as much as the region is long."""
-    inside = shapely.clip_by_rect(region, *bounds_mm)
-    return as_region(inside if inside.is_valid else shapely.make_valid(inside))
+    """The part of a region in a rectangle; it costs as much as the region is long.
+
+    GEOS has a quicker way, `clip_by_rect`, which now and then leaves a hole out.
+    """
+    return as_region(region.intersection(shapely.box(*bounds_mm)))
 
 
 def region_of(outlines: Sequence[Outline]) -> Region:

@@ -2,7 +2,7 @@
 
 import heapq
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final, Protocol
 
@@ -10,7 +10,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from satAOI_geo.aoi import Aoi, areas
+from satAOI_geo.aoi import Aoi, Outline, areas
 from satAOI_geo.discs import covered_cells
 from satAOI_geo.lattice import WORD_BITS, Lattice
 from satAOI_geo.nodes import Nodes
@@ -43,14 +43,21 @@ class Zone:
     Attributes:
         label: Number of the component.
         n_nodes: Nodes at which it has some pose.
-        aoi: What the disc covers; the raster is that of the zone's window.
+        outlines: The connected parts of what the disc covers, largest first.
+        raster_area_mm2: Area of the cells that it covers.
         set_down: A state to set the robot down at, well inside.
     """
 
     label: int
     n_nodes: int
-    aoi: Aoi
+    outlines: tuple[Outline, ...]
+    raster_area_mm2: float
     set_down: State
+
+    @property
+    def area_mm2(self) -> float:
+        """Area inside the outlines."""
+        return sum(outline.area_mm2() for outline in self.outlines)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,28 +92,30 @@ def zones(
     components: PoseComponents,
     lattice: Lattice,
     disc_mm: float,
+    known: Mapping[int, Aoi],
     progress: Callable[[float], None] | None = None,
 ) -> tuple[Zone, ...]:
-    """All components of at least `ZONE_MM2`, the largest raster area first."""
-    found = []
-    bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
-    labels = np.flatnonzero(bounds_mm2 >= ZONE_MM2)
-    # the widest first, so that windows of a size make a batch
-    labels = labels[np.argsort(-np.ptp(components.boxes[labels, 1::2], axis=1), kind="stable")]
-    n_done = 0
-    for batch in _batches(components.boxes, labels):
-        windows = [_window(components.boxes[label], lattice, disc_mm) for label in batch]
-        sets = [
-            components.nodes(label, *window) for label, window in zip(batch, windows, strict=True)
-        ]
-        covered = areas(sets, [lattice.window(*window) for window in windows], disc_mm)
-        for label, nodes, aoi in zip(batch, sets, covered, strict=True):
-            if aoi.area_mm2 >= ZONE_MM2:
-                found.append(Zone(label, nodes.count(), aoi, set_down(components, label)))
-        n_done += len(batch)
-        if progress is not None:
-            progress(n_done / labels.size)
-    return tuple(sorted(found, key=lambda zone: (-zone.aoi.raster_area_mm2, zone.label)))
+    """All components of at least `ZONE_MM2`, the largest raster area first.
+
+    Args:
+        components: The components.
+        lattice: Nodes and directions.
+        disc_mm: Radius of the disc.
+        known: What some of them cover, by their numbers.
+        progress: Called with the share of them that is done.
+    """
+    found = [
+        Zone(
+            label,
+            components.stretches.count(label),
+            aoi.outlines,
+            aoi.raster_area_mm2,
+            set_down(components, label),
+        )
+        for label, aoi in _covered(components, lattice, disc_mm, known, progress)
+        if aoi.area_mm2 >= ZONE_MM2
+    ]
+    return tuple(sorted(found, key=lambda zone: (-zone.raster_area_mm2, zone.label)))
 
 
 def set_downs(
@@ -146,11 +155,38 @@ def set_downs(
     return tuple(chosen)
 
 
-def _batches(boxes: npt.NDArray[np.int64], labels: npt.NDArray[np.int64]) -> Iterator[list[int]]:
+def _covered(
+    components: PoseComponents,
+    lattice: Lattice,
+    disc_mm: float,
+    known: Mapping[int, Aoi],
+    progress: Callable[[float], None] | None,
+) -> Iterator[tuple[int, Aoi]]:
+    """What each component that may be large enough for a zone covers; see `zones`."""
+    yield from known.items()
+    boxes = components.boxes
+    bounds_mm2 = _area_bounds_mm2(boxes, disc_mm, lattice.step_mm)
+    labels = np.flatnonzero(bounds_mm2 >= ZONE_MM2)
+    # the widest first, so that windows of a size make a batch
+    labels = labels[np.argsort(boxes[labels, 1] - boxes[labels, 3], kind="stable")]
+    n_done = 0
+    for batch in _batches(boxes, [label for label in labels.tolist() if label not in known]):
+        windows = [_window(boxes[label], lattice, disc_mm) for label in batch]
+        sets = [
+            components.nodes(label, *window) for label, window in zip(batch, windows, strict=True)
+        ]
+        covered = areas(sets, [lattice.window(*window) for window in windows], disc_mm)
+        yield from zip(batch, covered, strict=True)
+        n_done += len(batch)
+        if progress is not None:
+            progress(n_done / labels.size)
+
+
+def _batches(boxes: npt.NDArray[np.int64], labels: list[int]) -> Iterator[list[int]]:
     """Sets whose windows, one above the other, are not too large; a large set has its own."""
     batch: list[int] = []
     n_rows = n_columns = 0
-    for label in labels.tolist():
+    for label in labels:
         height, width = (boxes[label, 2:] - boxes[label, :2] + 1).tolist()
         if batch and (n_rows + height) * max(n_columns, width) > BATCH_NODES:
             yield batch

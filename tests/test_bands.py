@@ -32,7 +32,7 @@ def assert_same(one: Result, other: Result) -> None:
     assert np.array_equal(one.aoi.cells.words, other.aoi.cells.words)
     assert np.array_equal(one.search.free.words, other.search.free.words)
     for zone, same in zip(one.zones, other.zones, strict=True):
-        for part, equal in zip(zone.aoi.outlines, same.aoi.outlines, strict=True):
+        for part, equal in zip(zone.outlines, same.outlines, strict=True):
             assert np.array_equal(part.exterior.vertices, equal.exterior.vertices)
     assert [patch.region for patch in one.patches] == [patch.region for patch in other.patches]
 

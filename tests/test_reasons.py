@@ -6,10 +6,11 @@ import pytest
 import shapely
 from shapely.geometry import Point, box
 
+from satAOI_geo import tiles
 from satAOI_geo.explain import explain
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import FloorPlan, Kind, Obstacle
-from satAOI_geo.reasons import Patch, Reason
+from satAOI_geo.reasons import Patch, Reason, unreached
 from satAOI_geo.settings import Settings
 from satAOI_geo.start import StartMark
 from satAOI_geo.units import MM2_PER_M2
@@ -67,6 +68,30 @@ def test_label_lies_in_its_patch(seed: int) -> None:
     settings = Settings(step_mm=25.0, n_directions=12)
     for patch in area_of_interest(plans.random_plan(seed), settings=settings).patches:
         assert patch.region.intersects(Point(patch.label_mm))
+
+
+@pytest.mark.parametrize("seed", [0, 2, 6])
+@pytest.mark.parametrize("tile_cells", [64, 128])
+def test_a_floor_cut_into_tiles_has_the_same_left_over(
+    monkeypatch: pytest.MonkeyPatch, seed: int, tile_cells: int
+) -> None:
+    settings = Settings(step_mm=25.0, n_directions=12)
+    result = area_of_interest(plans.random_plan(seed), settings=settings)
+    monkeypatch.setattr(tiles, "TILE_CELLS", tile_cells)
+    cut = unreached(result.search, result.aoi, result.upper)
+
+    left_mm2 = sum(patch.area_mm2 for patch in result.patches)
+    assert sum(patch.area_mm2 for patch in cut) == pytest.approx(left_mm2, abs=SLACK_MM2)
+    together = shapely.union_all([patch.region for patch in cut]).area
+    assert together == pytest.approx(left_mm2, abs=SLACK_MM2)
+    # a seam may change to which reason a sliver counts, and no more than that
+    for reason in Reason:
+        whole_mm2, cut_mm2 = (
+            sum(patch.area_mm2 for patch in patches if patch.reason is reason)
+            for patches in (result.patches, cut)
+        )
+        assert cut_mm2 == pytest.approx(whole_mm2, abs=0.004 * left_mm2)
+    assert cut[0].area_mm2 == pytest.approx(result.patches[0].area_mm2, rel=0.01)
 
 
 def test_niche_narrower_than_the_disc_is_left_for_the_disc() -> None:

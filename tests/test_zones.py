@@ -33,7 +33,7 @@ def test_rooms_apart_are_two_zones_the_larger_first() -> None:
     assert len(zones) == 2
     rooms_mm2 = [plans.room_on_lattice_mm2(side, 4000.0, 25.0) for side in (4000.0, 3000.0)]
     # 350 mm is 14 cells, so the closed form for whole steps holds; clean outlines lose 0.05 mm
-    found_mm2 = [zone.aoi.area_mm2 for zone in zones]
+    found_mm2 = [zone.area_mm2 for zone in zones]
     assert found_mm2 == pytest.approx(rooms_mm2, abs=0.05 * 16000)
 
 
@@ -85,14 +85,14 @@ def test_without_a_start_the_largest_zone_is_taken() -> None:
     found = area_of_interest(two_rooms_apart(), settings=SETTINGS)
     assert found.search.start.source == "largest"
     assert found.search.start.pose_label == found.zones[0].label
-    assert found.aoi.area_mm2 == pytest.approx(found.zones[0].aoi.area_mm2)
+    assert found.aoi.area_mm2 == pytest.approx(found.zones[0].area_mm2)
 
 
 def test_start_in_the_smaller_room_trowels_the_smaller_room() -> None:
     found = area_of_interest(
         two_rooms_apart(), settings=SETTINGS, start=StartMark((5700.0, 2000.0))
     )
-    assert found.aoi.area_mm2 == pytest.approx(found.zones[1].aoi.area_mm2)
+    assert found.aoi.area_mm2 == pytest.approx(found.zones[1].area_mm2)
 
 
 def test_start_in_a_wall_names_the_wall_and_the_nearest_free_node() -> None:

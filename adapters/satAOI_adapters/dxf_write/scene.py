@@ -91,8 +91,8 @@ def draw_zones(space: Modelspace, result: Result) -> None:
     """Draw the outline of what each set-down can trowel."""
     pen = Pen(space, result.plan.frame, ZONE.name)
     for number, zone in enumerate(result.zones, start=1):
-        facts = {"zone": number, "area_m2": zone.aoi.area_mm2 / MM2_PER_M2}
-        for outline in zone.aoi.outlines:
+        facts = {"zone": number, "area_m2": zone.area_mm2 / MM2_PER_M2}
+        for outline in zone.outlines:
             for loop in (outline.exterior, *outline.holes):
                 attach(pen.loop(loop), facts)
 
