@@ -92,17 +92,24 @@ def _watched(*, quiet: bool) -> "Console | None":
 
 @contextmanager
 def progress(*, quiet: bool) -> Iterator[Callable[[str, float], None] | None]:
-    """A progress bar on a terminal, None elsewhere; it is gone when the work is done."""
+    """Progress bars on a terminal, None elsewhere; they are gone when the work is done."""
     console = _watched(quiet=quiet)
     if console is None:
         yield None
         return
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task("", total=1.0)
-        yield lambda stage, share: bar.update(task, description=stage, completed=share)
+        lines: dict[str, TaskID] = {}
+
+        def show(stage: str, share: float) -> None:
+            # several may run at once; one that is done makes room
+            if stage not in lines:
+                lines[stage] = bar.add_task(stage, total=1.0)
+            bar.update(lines[stage], completed=share, visible=share < 1.0)
+
+        yield show
 
 
 @contextmanager
