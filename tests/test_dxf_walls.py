@@ -330,6 +330,53 @@ def test_courtyard_arc_wall_is_filled_between_its_faces(tmp_path: Path) -> None:
     assert 0 <= wall_mm2 - ring_mm2 < 0.02 * math.pi * 3200
 
 
+def test_walls_on_a_nameless_layer_beside_doors_are_told_by_their_look(tmp_path: Path) -> None:
+    document = house(opening_mm=900.0, layer="A-B2321-E")
+    space = document.modelspace()
+    space.add_arc((2000, 200), 900, 0, 90, dxfattribs={"layer": "A-DOOR"})
+    rectangle(space, 4000, 2000, 4300, 2300, layer="S-COLS")
+    lines(space, [(4500, 500), (5500, 500), (5500, 1500), (4500, 1500)], layer="Layer3")
+    plan = plan_of(document, tmp_path)
+    walls = [obstacle for obstacle in plan.obstacles if obstacle.kind is Kind.WALL]
+    assert {wall.layer for wall in walls} == {"A-B2321-E"}
+    area_mm2 = OUTSIDE.area - INSIDE.area - 900 * 200
+    assert shapely.union_all([wall.region() for wall in walls]).area == area_mm2
+    assert "walls-by-look" in codes(plan)
+
+
+@pytest.mark.parametrize("sign", ["A-WALL", "FLOOR"])
+def test_nothing_is_told_by_its_look_where_walls_or_floor_are_named(
+    sign: str, tmp_path: Path
+) -> None:
+    document = house(opening_mm=900.0, layer="A-B2321-E")
+    space = document.modelspace()
+    space.add_arc((2000, 200), 900, 0, 90, dxfattribs={"layer": "A-DOOR"})
+    rectangle(space, -500, -500, 7000, 5000, layer=sign)
+    assert "walls-by-look" not in codes(plan_of(document, tmp_path))
+
+
+def test_pipes_among_foundations_are_no_walls_by_their_look(tmp_path: Path) -> None:
+    document = house(opening_mm=900.0, layer="XYZ")
+    rectangle(document.modelspace(), 4000, 2000, 5300, 3300, layer="EQUIPMENT")
+    plan = plan_of(document, tmp_path)
+    assert {obstacle.kind for obstacle in plan.obstacles} == {Kind.EQUIPMENT}
+
+
+def test_open_lines_on_a_nameless_layer_are_left_out_and_said(tmp_path: Path) -> None:
+    document = drawing()
+    space = document.modelspace()
+    space.add_line((1000, 1000), (4000, 1000), dxfattribs={"layer": "XYZ"})
+    space.add_line((50_000, 0), (51_000, 0), dxfattribs={"layer": "XYZ"})
+    hatch = space.add_hatch(dxfattribs={"layer": "XYZ"})
+    hatch.set_pattern_fill("ANSI31")
+    hatch.paths.add_polyline_path([(5000, 5000), (6000, 5000), (6000, 6000)])
+    rectangle(space, 7000, 7000, 7300, 7300, layer="COLUMN")
+    plan = plan_of(document, tmp_path)
+    assert {obstacle.layer for obstacle in plan.obstacles} == {"COLUMN"}
+    (said,) = [f for f in plan.findings if f.code == "unclassified-left-out"]
+    assert "1 open lines and 1 patterns on layer 'XYZ'" in said.message
+
+
 @pytest.mark.parametrize("leaf", ["line", "rectangle", "four lines"])
 def test_door_drawn_among_walls_is_left_out_and_the_walls_stay(leaf: str, tmp_path: Path) -> None:
     document = house(opening_mm=900.0)

@@ -178,16 +178,28 @@ def _shorter_side(path: Path) -> float:
 
 def _wall_thicknesses(features: Sequence[tuple[Meaning | None, Feature]]) -> FloatArray:
     """For each line of a wall, the distance to the nearest parallel one that runs beside it."""
+    _, distances = beside(feature for meaning, feature in features if meaning is Meaning.WALL)
+    return np.asarray(distances[np.isfinite(distances)])
+
+
+def beside(features: Iterable[Feature]) -> tuple[FloatArray, FloatArray]:
+    """How long straight lines are, and how far beside each the nearest parallel one runs.
+
+    Args:
+        features: What is drawn; of many lines the longest `MAX_LINES` are looked at.
+
+    Returns:
+        The lengths and the distances, infinite where no line runs beside, each of shape (n,).
+    """
     lines = [
         (piece.start, piece.end)
-        for meaning, feature in features
-        if meaning is Meaning.WALL
+        for feature in features
         for path in feature.paths
         for piece in path.pieces
         if isinstance(piece, Line)
     ]
     if len(lines) < 2:
-        return np.array([])
+        return np.array([]), np.array([])
     lines.sort(key=lambda line: -math.dist(*line))
     ends = np.array(lines[:MAX_LINES])
     along = ends[:, 1] - ends[:, 0]
@@ -201,10 +213,10 @@ def _wall_thicknesses(features: Sequence[tuple[Meaning | None, Feature]]) -> Flo
     offsets = ends[other, 0] - ends[own].mean(axis=1)
     distances = np.abs(offsets[:, 0] * along[own, 1] - offsets[:, 1] * along[own, 0])
     slim = (distances > 1e-3 * lengths[own]) & (distances < SLIM * lengths[own])
-    beside = (sines < 0.02) & slim
+    is_beside = (sines < 0.02) & slim
     nearest = np.full(len(ends), np.inf)
-    np.minimum.at(nearest, own[beside], distances[beside])
-    return np.asarray(nearest[np.isfinite(nearest)])
+    np.minimum.at(nearest, own[is_beside], distances[is_beside])
+    return lengths, nearest
 
 
 def _attributes(entities: Iterable[DXFEntity], names: dict[str, str]) -> FloatArray:

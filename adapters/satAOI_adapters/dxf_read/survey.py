@@ -16,6 +16,7 @@ from satAOI_adapters.dxf_read.entities import DRAWN, features_of
 from satAOI_adapters.dxf_read.estimate import estimate
 from satAOI_adapters.dxf_read.expand import Expansion, Placed, expand
 from satAOI_adapters.dxf_read.features import Feature
+from satAOI_adapters.dxf_read.lookalikes import with_lookalikes
 from satAOI_adapters.dxf_read.meaning import LISTED, Seen, with_meaning
 from satAOI_adapters.dxf_read.opening import open_drawing
 from satAOI_adapters.dxf_read.options import ReadOptions
@@ -192,6 +193,9 @@ def survey(path: Path, options: ReadOptions) -> Survey:
         known = unit_of(header.get("$INSUNITS", NO_UNIT), options.units, guess, size, path.name)
     except UnitError as error:
         known = error
+    by_look: tuple[Finding, ...] = ()
+    if isinstance(known, Known):
+        near, by_look = with_lookalikes(near, known.unit.mm)
     return Survey(
         path=path,
         sha256=opened.sha256,
@@ -212,6 +216,7 @@ def survey(path: Path, options: ReadOptions) -> Survey:
             *foreign_findings(foreign),
             *strays,
             *fallback,
+            *by_look,
         ),
         unread=(*foreign, *(entity for entity, _ in broken)),
         fault=(

@@ -35,6 +35,7 @@ def unclassified(features: Sequence[Feature], floor: Region, known: Sequence[Obs
     shapely.prepare(floor)
     things = [thing for feature in features for thing in _closed(feature) if _is_on(thing, floor)]
     rooms = _rooms(things, known)
+    left_out = [feature for feature in features if _is_open(feature) and _reaches(feature, floor)]
     standing = [thing for i, thing in enumerate(things) if i not in rooms]
     findings = [
         *_found(
@@ -51,16 +52,49 @@ def unclassified(features: Sequence[Feature], floor: Region, known: Sequence[Obs
             "or each other and are taken as rooms, not as obstacles",
             "say what the layer is in a file for --layers",
         ),
+        *_left_out(left_out),
     ]
     return Standing(tuple(standing), tuple(findings))
+
+
+def _counted(n_lines: int, n_patterns: int) -> str:
+    said = [(n_lines, "open lines"), (n_patterns, "patterns")]
+    return " and ".join(f"{count} {what}" for count, what in said if count)
+
+
+def _is_open(feature: Feature) -> bool:
+    """Whether a feature is a pattern or has open lines: neither counts as a thing."""
+    return _is_pattern(feature) or (
+        not feature.is_area and not feature.width_mm and not all(p.closed for p in feature.paths)
+    )
+
+
+def _reaches(feature: Feature, floor: Region) -> bool:
+    return any(floor.intersects(LineString(path.rough())) for path in feature.paths)
+
+
+def _left_out(features: Sequence[Feature]) -> list[Finding]:
+    lines: Counter[str] = Counter()
+    patterns: Counter[str] = Counter()
+    for feature in features:
+        (patterns if feature.is_area else lines)[feature.placed.layer] += 1
+    return [
+        Finding(
+            "unclassified-left-out",
+            f"{_counted(lines[layer], patterns[layer])} on layer '{layer}' on the floor are left "
+            "out: the layer's name says nothing",
+            "say what the layer is in a file for --layers if they stop the robot",
+            layer=layer,
+        )
+        for layer in {**lines, **patterns}
+    ]
 
 
 def _closed(feature: Feature) -> list[Obstacle]:
     """The closed shapes of a feature; none of a pattern or a line."""
     placed = feature.placed
     if feature.is_area:
-        is_pattern = placed.kind == "HATCH" and not placed.entity.dxf.solid_fill
-        shapes = [] if is_pattern else area_of(feature)
+        shapes = [] if _is_pattern(feature) else area_of(feature)
     elif feature.width_mm:
         shapes = area_of(feature)
     else:
@@ -70,6 +104,11 @@ def _closed(feature: Feature) -> list[Obstacle]:
         for shape in shapes
         if not isinstance(shape, LineString)
     ]
+
+
+def _is_pattern(feature: Feature) -> bool:
+    entity = feature.placed.entity
+    return feature.is_area and feature.placed.kind == "HATCH" and not entity.dxf.solid_fill
 
 
 def _is_on(thing: Obstacle, floor: Region) -> bool:
