@@ -330,6 +330,29 @@ def test_courtyard_arc_wall_is_filled_between_its_faces(tmp_path: Path) -> None:
     assert 0 <= wall_mm2 - ring_mm2 < 0.02 * math.pi * 3200
 
 
+@pytest.mark.parametrize(
+    ("layer", "kind"), [("A-WALL-PATT", Kind.WALL), ("柱填充", Kind.COLUMN), ("PATTERN", None)]
+)
+def test_walls_and_columns_that_are_nothing_but_fills_are_read_from_pattern_layers(
+    layer: str, kind: Kind | None, tmp_path: Path
+) -> None:
+    document = drawing()
+    hatch = document.modelspace().add_hatch(dxfattribs={"layer": layer})
+    hatch.paths.add_polyline_path([(1000, 1000), (5000, 1000), (5000, 1240), (1000, 1240)])
+    plan = plan_of(document, tmp_path)
+    assert {o.kind for o in plan.obstacles} == ({kind} if kind else set())
+    assert ("fills-only" in codes(plan)) == (kind is not None)
+
+
+def test_fills_on_pattern_layers_count_for_nothing_beside_walls(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 1000, 3000, 5000, 3240, layer="A-WALL")
+    hatch = document.modelspace().add_hatch(dxfattribs={"layer": "A-WALL-PATT"})
+    hatch.paths.add_polyline_path([(1000, 1000), (5000, 1000), (5000, 1240), (1000, 1240)])
+    plan = plan_of(document, tmp_path)
+    assert {o.layer for o in plan.obstacles} == {"A-WALL"}
+
+
 def test_walls_on_a_nameless_layer_beside_doors_are_told_by_their_look(tmp_path: Path) -> None:
     document = house(opening_mm=900.0, layer="A-B2321-E")
     space = document.modelspace()

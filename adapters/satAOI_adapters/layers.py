@@ -164,6 +164,11 @@ class LayerTable:
         """What a layer of this name means; prefixes of external references are dropped."""
         return _first(self.layers, without_xref_prefix(name))
 
+    def of_fill(self, name: str) -> Verdict:
+        """What the fills on a layer of this name fill: a layer of patterns for walls, walls."""
+        telling = tuple(rule for rule in self.layers if rule.meaning is not Meaning.IGNORE)
+        return _first(telling, without_xref_prefix(name))
+
     def of_block(self, name: str) -> Verdict:
         """What a block of this name means."""
         return _first(self.blocks, without_xref_prefix(name))

@@ -7,11 +7,17 @@ from typing import Final
 from ezdxf.entities import LWPolyline, Polyline
 
 from satAOI_adapters.dxf_read.expand import Placed
-from satAOI_adapters.layers import KINDS, LayerTable, Meaning, Verdict
+from satAOI_adapters.layers import KINDS, Certainty, LayerTable, Meaning, Verdict
 from satAOI_geo.plan import Finding
 
 LISTED: Final = 5
 """Layers that a message names before it counts the rest."""
+
+FILLS: Final = frozenset({"HATCH", "MPOLYGON", "SOLID", "TRACE"})
+"""Types of entity that fill."""
+
+BY_FILLS: Final = (Meaning.WALL, Meaning.COLUMN)
+"""What some offices draw by nothing but fills, on layers that are named after these."""
 
 TELLING: Final = frozenset(KINDS) - {Meaning.WINDOW}
 """Meanings of which one at least must occur; else no layer tells what stops the robot."""
@@ -35,18 +41,60 @@ def with_meaning(
         name = (placed.layer, placed.blocks)
         if name not in known:
             known[name] = verdict_of(placed, table)
-    seen = tuple(Seen(placed, known[placed.layer, placed.blocks]) for placed in drawn)
+    seen = [Seen(placed, known[placed.layer, placed.blocks]) for placed in drawn]
+    filled: list[Finding] = []
+    for meaning in BY_FILLS:
+        if all(entity.verdict.meaning is not meaning for entity in seen):
+            seen, findings = _with_fills(seen, meaning, table)
+            filled.extend(findings)
     is_unnamed = [entity.verdict.meaning is None or _is_face(entity) for entity in seen]
     if any(entity.verdict.meaning in TELLING for entity in seen) or not any(is_unnamed):
-        return seen, ()
+        return tuple(seen), tuple(filled)
     as_wall = Verdict(Meaning.WALL)
     return (
         tuple(
             replace(entity, verdict=as_wall) if unnamed else entity
             for entity, unnamed in zip(seen, is_unnamed, strict=True)
         ),
-        (_all_walls([e for e, unnamed in zip(seen, is_unnamed, strict=True) if unnamed]),),
+        (
+            *filled,
+            _all_walls([e for e, unnamed in zip(seen, is_unnamed, strict=True) if unnamed]),
+        ),
     )
+
+
+def _with_fills(
+    seen: Sequence[Seen], meaning: Meaning, table: LayerTable
+) -> tuple[list[Seen], list[Finding]]:
+    """The fills of walls, or of columns, on layers of patterns, where nothing else draws these."""
+    verdicts = {
+        layer: table.of_fill(layer)
+        for layer in {e.placed.layer for e in seen if _is_ignored_fill(e)}
+    }
+    told = [
+        replace(entity, verdict=verdicts[entity.placed.layer])
+        if _is_ignored_fill(entity) and verdicts[entity.placed.layer].meaning is meaning
+        else entity
+        for entity in seen
+    ]
+    layers = sorted(layer for layer, verdict in verdicts.items() if verdict.meaning is meaning)
+    return told, [
+        Finding(
+            "fills-only",
+            f"no layer draws a {meaning} by its lines: the fills on layer '{layer}' are taken as "
+            f"{meaning}s",
+            "say what the layer is in a file for --layers",
+            layer=layer,
+        )
+        for layer in layers
+    ]
+
+
+def _is_ignored_fill(entity: Seen) -> bool:
+    """Whether a fill is left out for its layer; what the user's file leaves out stays out."""
+    verdict = entity.verdict
+    is_left_out = verdict.meaning is Meaning.IGNORE and verdict.certainty is not Certainty.GIVEN
+    return is_left_out and entity.placed.kind in FILLS
 
 
 def _is_face(entity: Seen) -> bool:
