@@ -322,6 +322,52 @@ def test_the_note_goes_to_the_first_free_side(
     assert free_place(PLAN, (3.0, 2.0), gap=1.0, taken=boxes) == expected
 
 
+def test_bounds_are_told_piece_by_piece() -> None:
+    space = ezdxf.new().modelspace()
+    space.add_line((5, 1), (2, 3))
+    space.add_lwpolyline([(0, 0), (4, 0), (4, 3)], close=True)
+    space.add_lwpolyline([(0, 0), (4, 0), (4, 3)])
+    space.add_circle((7, 7), 1)
+    space.add_lwpolyline([(0, 0, 1), (2, 0, 0), (2, 5, 0)], format="xyb")
+    assert entity_bounds(space).tolist() == pytest.approx(
+        np.array(
+            [
+                (2, 1, 5, 3),
+                *((0, 0, 4, 0), (4, 0, 4, 3), (0, 0, 4, 3)),
+                *((0, 0, 4, 0), (4, 0, 4, 3)),
+                (6, 6, 8, 8),
+                *((0, -1, 2, 0), (2, 0, 2, 5)),
+            ]
+        )
+    )
+
+
+def test_a_polyline_seen_from_behind_is_bounded_where_it_is_seen() -> None:
+    space = ezdxf.new().modelspace()
+    space.add_lwpolyline([(1, 0), (4, 2)], dxfattribs={"extrusion": (0, 0, -1)})
+    assert entity_bounds(space).tolist() == [[-4, 0, -1, 2]]
+
+
+def test_letters_are_measured_without_a_font_and_keep_their_own() -> None:
+    document = ezdxf.new()
+    style = document.styles.add("STAMP", font="arial.ttf")
+    space = document.modelspace()
+    space.add_text("four", height=2, dxfattribs={"style": "STAMP", "insert": (1, 1)})
+    ((left, bottom, right, _),) = entity_bounds(space).tolist()
+    assert (left, right) == (1, 1 + 4 * 2)
+    assert bottom <= 1
+    assert style.dxf.font == "arial.ttf"
+
+
+def test_an_entity_that_cannot_be_measured_is_left_out() -> None:
+    document = ezdxf.new()
+    space = document.modelspace()
+    space.add_blockref("NOWHERE", (0, 0))
+    space.add_lwpolyline([])
+    space.add_lwpolyline([(3, 4)])
+    assert entity_bounds(space).shape == (0, 4)
+
+
 # --- what is kept, and in which order --------------------------------------------------------
 
 

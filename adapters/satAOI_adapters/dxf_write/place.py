@@ -1,14 +1,18 @@
 """Where the floor lies in the drawing, and where beside it there is room for a note."""
 
+import contextlib
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TypeAlias
 
 import numpy as np
 import shapely
 from ezdxf import bbox
-from ezdxf.entities import DXFGraphic, LWPolyline, Polyline
+from ezdxf.document import Drawing
+from ezdxf.entities import DXFGraphic, Line, LWPolyline, Polyline
+from ezdxf.fonts.fonts import MONOSPACE
 from ezdxf.layouts import Modelspace
+from ezdxf.math import Vec3
 
 from satAOI_geo.plan import FloatArray, FloorPlan
 
@@ -66,27 +70,60 @@ def free_place(plan: Bounds, size: tuple[float, float], *, gap: float, taken: Fl
 
 
 def entity_bounds(space: Modelspace) -> FloatArray:
-    """Bounds of what is drawn, shape (n, 4): of each entity, of a polyline each piece."""
+    """Bounds of what is drawn, shape (n, 4): of each entity, of a polyline each piece.
+
+    Letters count as wide as they are high, whatever fonts this machine has.
+    """
     cache = bbox.Cache()
-    found = []
-    for piece in _pieces(space):
-        try:
-            box = bbox.extents([piece], fast=True, cache=cache)
-        except Exception:  # noqa: BLE001, S112 - a damaged entity raises whatever comes to it
-            # what cannot be measured is not drawn either: there is nothing to avoid
-            continue
-        if box.has_data:
-            found.append((*box.extmin.vec2, *box.extmax.vec2))
-    return np.array(found, dtype=np.float64).reshape(-1, 4)
+    found = [np.empty((0, 4))]
+    with _letters_of_one_width(space.doc):
+        for entity in space:
+            # a damaged entity raises whatever comes to it; what cannot be measured is not drawn
+            # either, and there is nothing to avoid
+            with contextlib.suppress(Exception):
+                found.append(_bounds_of(entity, cache))
+    return np.concatenate(found)
 
 
-def _pieces(space: Modelspace) -> Iterator[DXFGraphic]:
-    """Entities, polylines in pieces: the box around a site boundary would leave no room at all."""
-    for entity in space:
-        if isinstance(entity, LWPolyline | Polyline):
-            yield from entity.virtual_entities()
-        else:
-            yield entity
+def _bounds_of(entity: DXFGraphic, cache: bbox.Cache) -> FloatArray:
+    """Bounds of an entity, shape (n, 4), n = 0 where it shows nothing.
+
+    Polylines count in pieces: the box around a site boundary would leave no room at all.
+    """
+    if isinstance(entity, Line):
+        return _of_pieces([entity.dxf.start, entity.dxf.end])
+    if isinstance(entity, LWPolyline) and not entity.has_arc:
+        corners = list(entity.vertices_in_wcs())
+        return _of_pieces(corners + corners[:1] if entity.closed else corners)
+    pieces = entity.virtual_entities() if isinstance(entity, LWPolyline | Polyline) else [entity]
+    boxes = (bbox.extents([piece], fast=True, cache=cache) for piece in pieces)
+    bounds = [(*box.extmin.vec2, *box.extmax.vec2) for box in boxes if box.has_data]
+    return np.array(bounds, dtype=np.float64).reshape(-1, 4)
+
+
+def _of_pieces(corners: Sequence[Vec3]) -> FloatArray:
+    """Bounds of each straight piece from corner to corner, shape (n - 1, 4)."""
+    points = np.array([(x, y) for x, y, _ in corners], dtype=np.float64).reshape(-1, 2)
+    begins, ends = points[:-1], points[1:]
+    return np.hstack((np.minimum(begins, ends), np.maximum(begins, ends)))
+
+
+@contextlib.contextmanager
+def _letters_of_one_width(document: Drawing) -> Iterator[None]:
+    """While this lasts, texts are measured in no font of this machine, which is slow to load."""
+    # shape files are no fonts of texts, and line types look for them by these names
+    texts = [style for style in document.styles if not style.is_shape_file]
+    before = [(style, style.dxf.get("font")) for style in texts]
+    for style, _ in before:
+        style.dxf.font = MONOSPACE
+    try:
+        yield
+    finally:
+        for style, font in before:
+            if font is None:
+                style.dxf.discard("font")
+            else:
+                style.dxf.font = font
 
 
 def _first_gap(
