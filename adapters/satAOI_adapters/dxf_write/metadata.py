@@ -19,7 +19,7 @@ SCHEMA: Final = "sataoi-dxf/1"
 STRING_LIMIT: Final = 250
 """Characters in one string: DXF allows 255 bytes, and some readers stop at a longer one."""
 
-SETTINGS: Final = {"robot", "lattice", "floor", "start", "aoi"}
+SETTINGS: Final = ("robot", "lattice", "floor", "start", "aoi")
 """Sections of the report that go into the drawing besides the input."""
 
 Facts: TypeAlias = Mapping[str, str | int | float]
@@ -54,7 +54,7 @@ def _settings(result: Result) -> dict[str, object]:
     report, frame = result.report, result.plan.frame
     name = PurePath(report.input.path).name
     return {
-        **{key: value for key, value in asdict(report).items() if key in SETTINGS},
+        **{section: asdict(getattr(report, section)) for section in SETTINGS},
         "input": asdict(replace(report.input, path=name)),
         "frame": {
             "origin_mm": frame.origin_mm,

@@ -68,12 +68,22 @@ class _Points(LWPolylinePoints):
         return points
 
     def dxftags(self) -> Iterator[DXFTag]:
-        """Group code and value in turn; a bulge of 0 need not be said."""
-        for x, y, _, _, bulge in self.values.tolist():
-            yield DXFTag(self.VERTEX_CODE, x)
-            yield DXFTag(self.VERTEX_CODE + 10, y)
-            if bulge:
-                yield DXFTag(self.BULGE_CODE, bulge)
+        """Group codes and values in one piece; a bulge of 0 need not be said."""
+        yield _Together(
+            self.VERTEX_CODE,
+            "".join(
+                f" 10\n{x}\n 20\n{y}\n 42\n{bulge}\n" if bulge else f" 10\n{x}\n 20\n{y}\n"
+                for x, y, _, _, bulge in self.values.tolist()
+            ),
+        )
+
+
+class _Together(DXFTag):
+    """Many tags in a row that are written as one; the value is their text."""
+
+    def dxfstr(self) -> str:
+        """The tags as they stand in the file."""
+        return str(self.value)
 
 
 @dataclass(frozen=True, slots=True)
