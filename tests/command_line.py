@@ -13,6 +13,14 @@ from satAOI_geo.cli import main
 
 ROOT = Path(__file__).parents[1]
 
+START = """
+import sys
+sys.path[:0] = sys.argv.pop(1).split("|")
+from satAOI_geo.cli import main
+sys.exit(main())
+"""
+"""The program for `python -c`; its first argument says where it lies."""
+
 
 def drawn_room(file: Path, *, insunits: int = 4, unit_mm: float = 1.0) -> Path:
     """A room of 4 × 4 m with its lower left corner at (-1, -1) m, a column at its top right.
@@ -49,10 +57,8 @@ def the_error(capsys: pytest.CaptureFixture[str]) -> str:
 
 def program(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """The program as a shell would start it."""
-    start = "import sys; sys.path[:0] = sys.argv.pop(1).split('|'); "
-    start += "from satAOI_geo.cli import main; sys.exit(main())"
     return subprocess.run(
-        [sys.executable, "-W", "error", "-c", start, f"{ROOT}|{ROOT / 'adapters'}", *arguments],
+        [sys.executable, "-W", "error", "-c", START, f"{ROOT}|{ROOT / 'adapters'}", *arguments],
         capture_output=True,
         encoding="utf-8",
         errors="replace",

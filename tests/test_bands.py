@@ -18,6 +18,7 @@ from satAOI_geo.route import RouteMap
 from satAOI_geo.settings import Settings
 from tests import cluster_jobs as jobs
 from tests import plans
+from tests.command_line import program
 
 SETTINGS = Settings(step_mm=25.0, n_directions=12)
 
@@ -59,25 +60,13 @@ class MortalCrew:
 
 
 def test_workers_of_whom_one_dies_find_the_same_answer(tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
     plan = plans.random_plan(86)
     mark = tmp_path / "died"
     with workers(n_workers=2) as crew:
         found = area_of_interest(plan, settings=SETTINGS, crew=MortalCrew(crew, mark))
     assert mark.exists()
     assert len(found.search.pose.bands) > 1
-    assert_same(area_of_interest(plan, settings=SETTINGS), found)
-
-
-def test_workers_of_dask_find_the_same_answer() -> None:
-    distributed = pytest.importorskip("distributed")
-    plan = plans.random_plan(87)
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=":0", memory_limit=0
-        ) as cluster,
-        workers(scheduler=cluster.scheduler_address) as crew,
-    ):
-        found = area_of_interest(plan, settings=SETTINGS, crew=crew)
     assert_same(area_of_interest(plan, settings=SETTINGS), found)
 
 
@@ -95,6 +84,7 @@ def test_memory_without_end_is_one_band() -> None:
 
 
 def test_the_command_line_shares_a_search_out(tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
     sample = Path(__file__).parents[1] / "samples" / "two_rooms_760.dxf"
     figures = []
     for name, options in (
@@ -103,8 +93,12 @@ def test_the_command_line_shares_a_search_out(tmp_path: Path) -> None:
         ("cut", ["--memory", "0.001"]),
     ):
         report = tmp_path / f"{name}.json"
-        asked = ["--step", "50", "--quiet", "--report", str(report), *options]
-        assert main([str(sample), *asked]) == 0
+        asked = [str(sample), "--step", "50", "--quiet", "--report", str(report), *options]
+        if name == "shared":
+            done = program(*asked)
+            assert (done.returncode, done.stderr) == (0, "")
+        else:
+            assert main(asked) == 0
         figures.append({**json.loads(report.read_text(encoding="utf-8")), "timing_s": {}})
     assert figures[0] == figures[1] == figures[2]
 

@@ -4,17 +4,18 @@ import contextlib
 import csv
 import json
 import multiprocessing
-import os
+import subprocess
+import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from pathlib import Path
 
 import pytest
 
 from satAOI_adapters import batch
 from satAOI_adapters.batch_results import Row, earlier_rows
-from satAOI_adapters.cluster import Outcome
+from satAOI_adapters.cluster import InTurn, Outcome, workers
 from satAOI_geo.cli import main
 from satAOI_geo.errors import InputError, LimitError
 from tests.command_line import drawn_room, the_error
@@ -37,18 +38,18 @@ pathlib.Path(report.partition("=")[2]).write_text(told)
 """Stands for the program where only the batch is tried: the area is the length of the plan."""
 
 
-class Here:
-    """Does the work in this process."""
+class Noting(InTurn):
+    """Does the work in this process and notes which plans it was given."""
 
     def __init__(self) -> None:
         self.done: list[str] = []
 
     def outcomes(
         self, function: Callable[[batch.Task], Row], tasks: Iterable[batch.Task]
-    ) -> Iterator[Outcome[Row]]:
-        for number, one in enumerate(tasks):
-            self.done.append(one.plan)
-            yield Outcome(number, function(one))
+    ) -> Generator[Outcome[Row], None, None]:
+        given = list(tasks)
+        self.done = [task.plan for task in given]
+        return super().outcomes(function, given)
 
 
 class Lost:
@@ -94,7 +95,7 @@ def batch_of(*arguments: str) -> int:
 
 def run_here(*options: str, again: bool = False) -> list[str]:
     """A batch of all texts in this process; the plans that were run."""
-    plans, out_dir, here = batch.plans_of(["*.dxf"]), Path("out"), Here()
+    plans, out_dir, here = batch.plans_of(["*.dxf"]), Path("out"), Noting()
     tasks = batch.tasks_of(plans, out_dir, options, [Path("layers.toml")])
     kept = {} if again else batch.rows_kept(tasks, earlier_rows(out_dir))
     batch.run_all(tasks, here, out_dir, kept=kept, told=lambda _: None)
@@ -156,17 +157,21 @@ def test_a_batch_that_is_resumed_tells_a_person_and_programs_the_same(
 def test_a_worker_killed_on_the_way_changes_no_result(
     rooms: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    pytest.importorskip("distributed")
+    psutil = pytest.importorskip("psutil")
     monkeypatch.chdir(rooms)
     before, killed = rows_of(rooms), []
 
-    def kill_the_first() -> None:
+    def kill_the_first_that_works() -> None:
         while not killed:
-            for process in multiprocessing.active_children():
-                process.kill()
-                killed.append(process.pid)
             time.sleep(0.01)
+            for process in multiprocessing.active_children():
+                with contextlib.suppress(psutil.NoSuchProcess):
+                    if psutil.Process(process.pid).children():
+                        process.kill()
+                        killed.append(process.pid)
 
-    killer = threading.Thread(target=kill_the_first)
+    killer = threading.Thread(target=kill_the_first_that_works)
     killer.start()
     assert batch_of("plans/**/*.dxf", "-q", "--again", "--workers", "1") == BAD
     killer.join()
@@ -176,21 +181,45 @@ def test_a_worker_killed_on_the_way_changes_no_result(
 def test_workers_of_a_scheduler_give_the_same_results(
     rooms: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    distributed = pytest.importorskip("distributed")
+    pytest.importorskip("distributed")
     monkeypatch.chdir(rooms)
     before = rows_of(rooms)
     files = {file: file.read_bytes() for file in Path("out").rglob("*.dxf")}
-    with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, dashboard_address=":0"
-    ) as cluster:
-        (nanny,) = cluster.workers.values()
-        killer = threading.Timer(1.5, lambda: os.kill(nanny.pid, 9))
-        killer.start()
-        arguments = ["-q", "--again", "--scheduler", cluster.scheduler_address]
-        assert batch_of("plans/**/*.dxf", *arguments) == BAD
-        killer.join()
+    with workers(n_workers=2) as crew:
+        address = crew._client.scheduler.address
+        assert batch_of("plans/**/*.dxf", "-q", "--again", "--scheduler", address) == BAD
     assert rows_of(rooms) == before
     assert {file: file.read_bytes() for file in files} == files
+
+
+@pytest.mark.usefixtures("texts")
+def test_a_batch_without_workers_needs_no_dask(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    assert batch_of("*.dxf", "-q") == 1
+    assert [row["exit_code"] for row in rows_of(Path()).values()] == [0, 1, 0]
+
+
+def test_a_run_ends_with_the_process_that_started_it(tmp_path: Path) -> None:
+    psutil = pytest.importorskip("psutil")
+    run = """
+import time
+from satAOI_adapters.batch import end_with_the_caller
+end_with_the_caller()
+time.sleep(60)
+"""
+    start = f"""
+import sys
+sys.path[:] = {sys.path}
+from satAOI_adapters import batch
+batch.PROGRAM = {run!r}
+batch.run_plan(batch.Task("a", "b", "c", (), {str(tmp_path)!r}, "", ""))
+"""
+    caller = subprocess.Popen([sys.executable, "-c", start])
+    while not (runs := psutil.Process(caller.pid).children()):
+        time.sleep(0.05)
+    caller.kill()
+    caller.wait()
+    assert psutil.wait_procs(runs, timeout=20) == (runs, [])
 
 
 @pytest.mark.usefixtures("texts")
@@ -251,7 +280,7 @@ def test_results_of_the_batch_are_no_plans() -> None:
         plans = batch.plans_of(["*.dxf"])
         tasks = batch.tasks_of(plans, Path(), [], [])
         assert [one.plan for one in tasks] == ["a.dxf", "b.dxf", "c.dxf"]
-        batch.run_all(tasks, Here(), Path(), kept={}, told=lambda _: None)
+        batch.run_all(tasks, InTurn(), Path(), kept={}, told=lambda _: None)
 
 
 def test_options_are_handed_on_as_they_were_written(

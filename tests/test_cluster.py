@@ -1,104 +1,128 @@
 """Work shared out: the same answers whoever does it, and whatever happens to them."""
 
 import itertools
+import os
+import signal
+import subprocess
 import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from satAOI_adapters.cluster import Workers, workers
+from satAOI_adapters.cluster import Dask, InTurn, Workers, workers
 from satAOI_geo.errors import InputError, LimitError
 from tests import cluster_jobs as jobs
+from tests.command_line import ROOT, START, the_error
 
-WHERE = ["processes", "dask"]
+dask = pytest.importorskip("dask")
+distributed = pytest.importorskip("distributed")
+psutil = pytest.importorskip("psutil")
+
+IN_TURN = "in turn"
+EVERYWHERE = [IN_TURN, "here", "scheduler"]
+HALL = ROOT / "samples" / "hall_complex.dxf"
 
 
 @contextmanager
-def dask_cluster(n_workers: int) -> Iterator[Any]:
-    """A Dask scheduler with some workers on this machine, and what stops them."""
-    distributed = pytest.importorskip("distributed")
-    dask = pytest.importorskip("dask")
+def two_workers() -> Iterator[Dask]:
+    """Workers of this machine; a task that kills two of them is given up."""
     with (
         dask.config.set({"distributed.scheduler.allowed-failures": 1}),
-        distributed.LocalCluster(
-            n_workers=n_workers, threads_per_worker=1, dashboard_address=":0", memory_limit=0
-        ) as cluster,
+        workers(n_workers=2) as crew,
     ):
-        yield cluster
+        yield crew
 
 
 @pytest.fixture(scope="module")
-def scheduler() -> Iterator[str]:
-    with dask_cluster(n_workers=2) as cluster:
-        yield cluster.scheduler_address
+def crew() -> Iterator[Dask]:
+    with two_workers() as working:
+        yield working
+
+
+@pytest.fixture(scope="module")
+def scheduler(crew: Dask) -> str:
+    """Address of a scheduler, to which these workers are somebody else's."""
+    return crew._client.scheduler.address
 
 
 @pytest.fixture
-def doomed_scheduler() -> Iterator[str]:
-    """One whose workers may die: Dask replaces them, but not always."""
-    with dask_cluster(n_workers=2) as cluster:
-        yield cluster.scheduler_address
+def mortal_crew() -> Iterator[Dask]:
+    """Workers that may die: Dask replaces them, but not always."""
+    with two_workers() as working:
+        yield working
 
 
-@contextmanager
-def crew(
-    where: str, request: pytest.FixtureRequest, scheduler: str = "scheduler"
-) -> Iterator[Workers]:
-    if where == "processes":
-        with workers(n_workers=2) as working:
+@pytest.fixture(params=EVERYWHERE)
+def anybody(request: pytest.FixtureRequest) -> Iterator[Workers]:
+    if request.param == IN_TURN:
+        with workers() as working:
+            assert isinstance(working, InTurn)
             yield working
+    elif request.param == "here":
+        yield request.getfixturevalue("crew")
     else:
-        with workers(scheduler=request.getfixturevalue(scheduler)) as working:
+        with workers(scheduler=request.getfixturevalue("scheduler")) as working:
             yield working
 
 
-@pytest.mark.parametrize("where", WHERE)
-def test_every_task_gets_its_answer(where: str, request: pytest.FixtureRequest) -> None:
-    with crew(where, request) as working:
-        outcomes = list(working.outcomes(jobs.squared, range(20)))
+def test_every_task_gets_its_answer(anybody: Workers) -> None:
+    outcomes = list(anybody.outcomes(jobs.squared, range(20)))
     assert sorted(outcome.number for outcome in outcomes) == list(range(20))
     assert all(outcome.value() == outcome.number**2 for outcome in outcomes)
 
 
-@pytest.mark.parametrize("where", WHERE)
-def test_no_tasks_have_no_outcomes(where: str, request: pytest.FixtureRequest) -> None:
-    with crew(where, request) as working:
-        assert list(working.outcomes(jobs.squared, [])) == []
+def test_no_tasks_have_no_outcomes(anybody: Workers) -> None:
+    assert list(anybody.outcomes(jobs.squared, [])) == []
 
 
-@pytest.mark.parametrize("where", WHERE)
-def test_what_the_function_raises_is_the_outcome(
-    where: str, request: pytest.FixtureRequest
-) -> None:
-    with crew(where, request) as working:
-        outcomes = list(working.outcomes(jobs.refused, [7, 8]))
+def test_what_the_function_raises_is_the_outcome(anybody: Workers) -> None:
+    outcomes = list(anybody.outcomes(jobs.refused, [7, 8]))
     assert sorted(str(outcome.error) for outcome in outcomes) == ["7", "8"]
     with pytest.raises(ValueError, match="7"):
         min(outcomes, key=lambda outcome: outcome.number).value()
 
 
-@pytest.mark.parametrize("where", WHERE)
-def test_a_worker_that_dies_changes_no_answer(
-    where: str, request: pytest.FixtureRequest, tmp_path: Path
-) -> None:
+def test_tasks_are_taken_as_their_outcomes_are_fetched(anybody: Workers) -> None:
+    taken: list[int] = []
+
+    def tasks() -> Iterator[int]:
+        for number in range(30):
+            taken.append(number)
+            yield number
+
+    for n_fetched, _ in enumerate(anybody.outcomes(jobs.squared, tasks()), start=1):
+        # two are worked on, two wait to be fetched
+        assert len(taken) - n_fetched <= 4
+    assert len(taken) == 30
+
+
+def test_outcomes_may_be_left_unfetched(anybody: Workers) -> None:
+    outcomes = anybody.outcomes(jobs.squared, itertools.count())
+    next(outcomes)
+    outcomes.close()
+
+
+def test_a_task_of_many_bytes_is_a_task(crew: Dask) -> None:
+    # Dask warns of 10 MB, and here a warning is an error
+    (outcome,) = crew.outcomes(len, [bytes(20_000_000)])
+    assert outcome.value() == 20_000_000
+
+
+def test_a_worker_that_dies_changes_no_answer(mortal_crew: Dask, tmp_path: Path) -> None:
     tasks = [(tmp_path / ("mark" if n in {1, 2} else f"mark {n}"), n) for n in range(4)]
     (tmp_path / "mark 0").touch()
     (tmp_path / "mark 3").touch()
-    with crew(where, request, "doomed_scheduler") as working:
-        outcomes = list(working.outcomes(jobs.squared_the_second_time, tasks))
+    outcomes = list(mortal_crew.outcomes(jobs.squared_the_second_time, tasks))
     assert {outcome.number: outcome.value() for outcome in outcomes} == {0: 0, 1: 1, 2: 4, 3: 9}
 
 
-@pytest.mark.parametrize("where", WHERE)
 def test_a_task_that_kills_every_worker_is_given_up_and_the_others_are_not(
-    where: str, request: pytest.FixtureRequest
+    mortal_crew: Dask,
 ) -> None:
-    with crew(where, request, "doomed_scheduler") as working:
-        outcomes = list(working.outcomes(jobs.deadly_if_one, range(4)))
+    outcomes = list(mortal_crew.outcomes(jobs.deadly_if_one, range(4)))
     by_number = {outcome.number: outcome for outcome in outcomes}
     assert [by_number[n].value() for n in (0, 2, 3)] == [0, 4, 9]
     with pytest.raises(LimitError, match="died, one after the other"):
@@ -107,61 +131,93 @@ def test_a_task_that_kills_every_worker_is_given_up_and_the_others_are_not(
 
 def test_the_loss_of_all_workers_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("satAOI_adapters.cluster.LOST_S", 1)
-    with (
-        dask_cluster(n_workers=1) as cluster,
-        workers(scheduler=cluster.scheduler_address) as working,
-    ):
+    with workers(n_workers=1) as working:
         outcomes = working.outcomes(jobs.squared, range(1000))
         assert next(outcomes).value() == 0
-        cluster.scale(0)
-        with pytest.raises(LimitError, match="lost all its workers"):
+        working._client.cluster.scale(0)
+        with pytest.raises(LimitError, match="workers are lost"):
             list(outcomes)
 
 
-@pytest.mark.parametrize("where", WHERE)
-def test_tasks_are_taken_as_their_outcomes_are_fetched(
-    where: str, request: pytest.FixtureRequest
+def test_nothing_can_be_reached_from_other_machines(crew: Dask) -> None:
+    assert list(crew.outcomes(jobs.squared, [3]))
+    own = psutil.Process()
+    addresses = {
+        socket.laddr.ip
+        for process in (own, *own.children(recursive=True))
+        for socket in process.net_connections()
+        if socket.status == psutil.CONN_LISTEN
+    }
+    assert addresses == {"127.0.0.1"}
+
+
+def children(program: subprocess.Popen[bytes]) -> list[psutil.Process]:
+    return psutil.Process(program.pid).children(recursive=True)
+
+
+def cpu_s(process: psutil.Process) -> float:
+    """What a process has worked, 0 when it is gone."""
+    try:
+        return process.cpu_times().user
+    except psutil.NoSuchProcess:
+        return 0.0
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a terminal's interrupt is sent in its own way")
+@pytest.mark.parametrize("busy_s", [0.0, 3.0], ids=["as they start", "as they work"])
+def test_an_interrupt_is_one_line_and_leaves_no_process(busy_s: float) -> None:
+    # at this step the workers have half a minute's work
+    asked = [str(HALL), "--step", "5", "--workers", "2"]
+    program = subprocess.Popen(
+        [sys.executable, "-c", START, f"{ROOT}|{ROOT / 'adapters'}", *asked],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
+    while not any(cpu_s(process) >= busy_s for process in children(program)):
+        time.sleep(0.05)
+    others = children(program)
+    # as a terminal does
+    os.killpg(program.pid, signal.SIGINT)
+    _, said = program.communicate(timeout=60)
+    assert said.decode().strip() == "error: interrupted"
+    assert program.returncode == 130
+    _, alive = psutil.wait_procs(others, timeout=10)
+    assert alive == []
+
+
+def test_workers_need_dask(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    taken: list[int] = []
+    from satAOI_geo.cli import main
 
-    def tasks() -> Iterator[int]:
-        for number in range(30):
-            taken.append(number)
-            yield number
-
-    with crew(where, request) as working:
-        outcomes = working.outcomes(jobs.squared, tasks())
-        for n_fetched, _ in enumerate(outcomes, start=1):
-            time.sleep(0.02)
-            # two are worked on, two wait to be fetched, two workers wait for room
-            assert len(taken) - n_fetched <= 6
-    assert len(taken) == 30
-
-
-@pytest.mark.parametrize("where", WHERE)
-def test_outcomes_may_be_left_unfetched(where: str, request: pytest.FixtureRequest) -> None:
-    with crew(where, request) as working:
-        outcomes = working.outcomes(jobs.squared, itertools.count())
-        next(outcomes)
-        outcomes.close()
-
-
-def test_workers_that_cannot_be_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    here_and_there = workers(n_workers=1, scheduler="tcp://127.0.0.1:1")
-    with pytest.raises(InputError, match="leave --workers out"), here_and_there:
-        pass
     monkeypatch.setitem(sys.modules, "distributed", None)
+    for option in (["--workers", "2"], ["--scheduler", "tcp://127.0.0.1:1"]):
+        assert main([str(HALL), *option]) == 2
+        assert "pip install 'satAOI-geo[cluster]'" in the_error(capsys)
+
+
+def test_workers_here_and_elsewhere_are_refused() -> None:
     with (
-        pytest.raises(InputError, match=r"satAOI-geo\[cluster\]"),
-        workers(scheduler="tcp://127.0.0.1:1"),
+        pytest.raises(InputError, match="leave --workers out"),
+        workers(n_workers=1, scheduler="tcp://127.0.0.1:1"),
     ):
+        pass
+
+
+def test_workers_that_do_not_start_are_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(**_: object) -> None:
+        raise RuntimeError("no room")
+
+    monkeypatch.setattr(distributed, "LocalCluster", refuse)
+    with pytest.raises(InputError, match="do not start: no room"), workers(n_workers=1):
         pass
 
 
 def test_a_scheduler_without_workers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("satAOI_adapters.cluster.CONNECT_S", 1)
     with (
-        dask_cluster(n_workers=0) as cluster,
+        distributed.LocalCluster(n_workers=0, dashboard_address=":0") as cluster,
         pytest.raises(InputError, match="has no workers"),
         workers(scheduler=cluster.scheduler_address),
     ):
@@ -180,7 +236,6 @@ def test_workers_of_another_version_are_refused(
 
 
 def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("distributed")
     monkeypatch.setattr("satAOI_adapters.cluster.CONNECT_S", 1)
     for address in ("tcp://127.0.0.1:1", "nonsense://x"):
         with (

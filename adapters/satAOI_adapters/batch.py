@@ -4,6 +4,7 @@ Each plan is run by the program itself in a process of its own: it gets the file
 `satAOI-geo run` writes, and nothing that becomes of it stops the rest.
 """
 
+import _thread
 import contextlib
 import glob
 import hashlib
@@ -12,9 +13,10 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -24,7 +26,13 @@ from satAOI_adapters.batch_results import Row, printable, save
 from satAOI_adapters.cluster import Outcome, Workers
 from satAOI_geo.errors import InputError, LimitError
 
-PROGRAM: Final = "import sys; from satAOI_geo.cli import main; sys.exit(main())"
+PROGRAM: Final = f"""
+import sys
+from {__name__} import end_with_the_caller
+from satAOI_geo.cli import main
+end_with_the_caller()
+sys.exit(main())
+"""
 
 DONE: Final = 0
 FAILED: Final = 1
@@ -228,15 +236,16 @@ def run_plan(task: Task) -> Row:
             Path(task.folder, old).unlink()
     files = [f"--output={task.output}", f"--report={task.report}", "--quiet", "--", task.plan]
     begin_s = time.perf_counter()
-    done = subprocess.run(  # noqa: S603  our own program, by our own interpreter
-        [sys.executable, "-c", PROGRAM, "run", *task.options, *files],
-        cwd=task.folder,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        check=False,
-    )
+    with _lifeline() as stdin:
+        done = subprocess.run(  # noqa: S603  our own program, by our own interpreter
+            [sys.executable, "-c", PROGRAM, "run", *task.options, *files],
+            cwd=task.folder,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            stdin=stdin,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            check=False,
+        )
     time_s = time.perf_counter() - begin_s
     if done.returncode != DONE:
         return failed(task, *_how_it_ended(done.returncode, done.stderr), time_s=time_s)
@@ -255,6 +264,30 @@ def run_plan(task: Task) -> Row:
         asked=task.asked,
         version=satAOI_geo.__version__,
     )
+
+
+@contextlib.contextmanager
+def _lifeline() -> Iterator[int]:
+    """An input for another process that holds nothing and ends when this process does."""
+    read_end, write_end = os.pipe()
+    try:
+        yield read_end
+    finally:
+        os.close(read_end)
+        os.close(write_end)
+
+
+def end_with_the_caller() -> None:
+    """In a run: interrupt it when the process that started it is gone, whatever became of that.
+
+    Another worker may have been given the same plan since.
+    """
+
+    def wait() -> None:
+        os.read(sys.stdin.fileno(), 1)
+        _thread.interrupt_main()
+
+    threading.Thread(target=wait, daemon=True).start()
 
 
 def failed(task: Task, exit_code: int, message: str, *, time_s: float = 0.0) -> Row:

@@ -1,4 +1,4 @@
-"""Work shared out: one function over many tasks, in processes here or on the workers of Dask.
+"""Work shared out: one function over many tasks, on workers of Dask here or on other machines.
 
     with workers(n_workers=4) as crew:
         for outcome in crew.outcomes(function, tasks):
@@ -6,43 +6,53 @@
 
 Function, tasks and answers go from process to process, so they are pickled: the function by its
 name in a module. Outcomes come in the order in which they are ready. Tasks are taken as workers
-get free, and none when as many outcomes wait to be fetched, so that memory is bounded. A task
-whose worker dies is given to another one, a few times at most.
+get free, so that memory is bounded. A task whose worker dies is given to another one, a few times
+at most.
 """
 
+import asyncio
 import itertools
-import os
-import queue
+import logging
 import signal
-import threading
+import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
-from multiprocessing import get_context
-from typing import TYPE_CHECKING, Final, Generic, Protocol, Self, TypeVar
+from multiprocessing import resource_tracker
+from typing import TYPE_CHECKING, Final, Generic, Protocol, TypeVar
 
 import satAOI_geo
 from satAOI_geo.errors import InputError, LimitError
 
 if TYPE_CHECKING:
-    from distributed import Client, Future
+    from distributed import Client, Future, KilledWorker, LocalCluster
 
 TaskT = TypeVar("TaskT")
 AnswerT = TypeVar("AnswerT")
-
-MAX_ATTEMPTS: Final = 3
-"""After so many processes that died of a task it is given up; Dask has a limit of its own."""
-
-INTERRUPT_S: Final = 0.3
-"""An interrupt reaches all processes; a worker that died of it is not to be replaced."""
 
 CONNECT_S: Final = 10
 """Longest wait for a scheduler, and then for its first worker."""
 
 LOST_S: Final = 30
 """Where nothing gets done for so long it is asked whether there are still workers."""
+
+END_S: Final = 0.1
+"""Longest wait for workers whose answers nobody wants any more."""
+
+CLIENT_CONFIG: Final[dict[str, object]] = {
+    # A band is a task of many bytes. Dask warns of these and would have them scattered, but what
+    # was scattered is lost with the worker that holds it.
+    "distributed.admin.large-graph-warning-threshold": sys.maxsize,
+}
+
+LOCAL_CONFIG: Final[dict[str, object]] = {
+    # what Dask puts here by itself, the number of threads of libraries, stays in this process's
+    # environment; workers log from their first moment
+    "distributed.nanny.pre-spawn-environ": {"DASK_LOGGING__DISTRIBUTED": "critical"},
+    "distributed.scheduler.http.routes": [],
+    "distributed.worker.http.routes": [],
+}
+"""Workers of this machine say nothing and show nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,138 +87,63 @@ class Workers(Protocol):
 
 @contextmanager
 def workers(*, n_workers: int | None = None, scheduler: str | None = None) -> Iterator[Workers]:
-    """Workers for the time of a block.
+    """Workers for the time of a block; without arguments this process is the only one.
 
     Args:
-        n_workers: Processes on this machine, 1 or more; without it half as many as it has cores,
-            since most work uses several.
+        n_workers: Processes on this machine, 1 or more.
         scheduler: Address of a Dask scheduler whose workers are to do it instead.
 
     Raises:
-        InputError: If both are given, the scheduler has no workers, or they are of another
-            version.
+        InputError: If both are given, Dask is not installed, workers cannot be started, or the
+            scheduler has none, or of another version.
     """
-    if scheduler is None:
-        yield Processes(n_workers or max(1, (os.cpu_count() or 1) // 2))
-        return
-    if n_workers is not None:
+    if n_workers is not None and scheduler is not None:
         raise InputError("a --scheduler has workers of its own; leave --workers out")
-    with _connected(scheduler) as client:
+    if scheduler is not None:
+        found = _connected(scheduler)
+    elif n_workers is not None:
+        found = _started(n_workers)
+    else:
+        yield InTurn()
+        return
+    with _dask_set(CLIENT_CONFIG), found as client:
         yield Dask(client)
 
 
-class Processes:
-    """Processes of this machine, each with a thread here that keeps it busy.
+def _dask_set(config: dict[str, object]) -> AbstractContextManager[object]:
+    """Dask as it is wanted for the time of a block.
 
-    A pool of one process each, rather than one pool of many, so that when a process dies it is
-    known of which task.
-
-    Args:
-        n_workers: How many.
+    Raises:
+        InputError: If it is not installed.
     """
+    try:
+        import dask
+        import distributed  # noqa: F401  brings its own part of the configuration
+    except ImportError as error:
+        raise InputError(
+            "--workers and --scheduler need Dask; install it with pip install 'satAOI-geo[cluster]'"
+        ) from error
+    config_set: AbstractContextManager[object] = dask.config.set(config)
+    return config_set
 
-    def __init__(self, n_workers: int) -> None:
-        self._n_workers = n_workers
+
+class InTurn:
+    """This process, which works on one task after the other."""
 
     def outcomes(
         self, function: Callable[[TaskT], AnswerT], tasks: Iterable[TaskT]
     ) -> Generator[Outcome[AnswerT], None, None]:
         """As in `Workers`."""
-        source = _Source(tasks)
-        # None says that a thread has ended
-        ready: queue.Queue[Outcome[AnswerT] | None] = queue.Queue(self._n_workers)
-
-        def keep_busy() -> None:
+        for number, task in enumerate(tasks):
             try:
-                with _OneProcess(source.closed) as process:
-                    while (numbered := source.next()) is not None:
-                        ready.put(process.outcome(function, *numbered))
-            finally:
-                ready.put(None)
-
-        with ThreadPoolExecutor(self._n_workers) as threads:
-            lanes = [threads.submit(keep_busy) for _ in range(self._n_workers)]
-            n_busy = len(lanes)
-            try:
-                while n_busy:
-                    outcome = ready.get()
-                    if outcome is None:
-                        n_busy -= 1
-                    else:
-                        yield outcome
-            finally:
-                source.closed.set()
-                # a thread may wait for room
-                while n_busy:
-                    n_busy -= ready.get() is None
-        for lane in lanes:
-            lane.result()
-
-
-class _Source(Generic[TaskT]):
-    """Tasks with their numbers, taken by several threads.
-
-    Attributes:
-        closed: Set when no more are to be taken.
-    """
-
-    def __init__(self, tasks: Iterable[TaskT]) -> None:
-        self._numbered = enumerate(tasks)
-        self._one_at_a_time = threading.Lock()
-        self.closed = threading.Event()
-
-    def next(self) -> tuple[int, TaskT] | None:
-        """The next task, None after the last."""
-        with self._one_at_a_time:
-            return None if self.closed.is_set() else next(self._numbered, None)
-
-
-class _OneProcess:
-    """A process that is replaced when it dies.
-
-    Args:
-        closed: Set when it is not to be replaced any more.
-    """
-
-    def __init__(self, closed: threading.Event) -> None:
-        self._closed = closed
-        self._pool = self._started()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._pool.shutdown()
-
-    def outcome(
-        self, function: Callable[[TaskT], AnswerT], number: int, task: TaskT
-    ) -> Outcome[AnswerT]:
-        """Work on a task, in as many processes as it takes."""
-        for _ in range(MAX_ATTEMPTS):
-            try:
-                return Outcome(number, self._pool.submit(function, task).result())
-            except BrokenProcessPool:
-                self._pool.shutdown()
-                if self._closed.wait(INTERRUPT_S):
-                    break
-                self._pool = self._started()
+                outcome = Outcome(number, function(task))
             except Exception as error:  # noqa: BLE001  whatever the function raises is its outcome
-                return Outcome(number, None, error)
-        return Outcome(number, None, _died())
-
-    def _started(self) -> ProcessPoolExecutor:
-        # a copy of this process, made by fork, could hold locks of threads that it lacks
-        context = get_context("spawn")
-        return ProcessPoolExecutor(1, mp_context=context, initializer=_end_when_interrupted)
-
-
-def _end_when_interrupted() -> None:
-    """End a worker at an interrupt without a word: the process that started it has the say."""
-    signal.signal(signal.SIGINT, lambda *_: os._exit(130))
+                outcome = Outcome(number, None, error)
+            yield outcome
 
 
 class Dask:
-    """The workers of a Dask scheduler.
+    """The workers of a Dask scheduler, of this machine or of others.
 
     Args:
         client: Connected to it.
@@ -258,7 +193,73 @@ def _outcome_of(number: int, future: "Future") -> Outcome[AnswerT]:
     error = future.exception()
     if error is None:
         return Outcome(number, future.result())
-    return Outcome(number, None, _died() if isinstance(error, KilledWorker) else error)
+    return Outcome(number, None, _died(error) if isinstance(error, KilledWorker) else error)
+
+
+@contextmanager
+def _started(n_workers: int) -> Iterator["Client"]:
+    """A client of a cluster on this machine, reached from this machine only.
+
+    Raises:
+        InputError: If it does not start.
+    """
+    from distributed import Client, LocalCluster
+
+    with ExitStack() as stack:
+        stack.enter_context(_dask_set(LOCAL_CONFIG))
+        with _interrupts_blocked():
+            try:
+                cluster = stack.enter_context(
+                    LocalCluster(
+                        n_workers=n_workers,
+                        threads_per_worker=1,
+                        # a band may take what there is; --memory says how much that is
+                        memory_limit=None,
+                        silence_logs=logging.CRITICAL,
+                        host="127.0.0.1",
+                        dashboard_address=None,
+                        # without an address this server, which shows nothing, takes a fixed port
+                        scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
+                    )
+                )
+            except (OSError, RuntimeError) as error:
+                raise InputError(f"the workers do not start: {error}") from error
+            client = stack.enter_context(Client(cluster))
+        with _ended_at_once_by_errors(cluster):
+            yield client
+
+
+@contextmanager
+def _interrupts_blocked() -> Iterator[None]:
+    """Let threads and processes that begin in the block never hear of an interrupt.
+
+    A terminal sends it to all processes; the one that was started there has the say.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    # before its first process Python starts this one, and lets interrupts through again
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _ended_at_once_by_errors(cluster: "LocalCluster") -> Iterator[None]:
+    """Wait for no task when the block ends with an error or an interrupt."""
+
+    async def end() -> None:
+        nannies = cluster.workers.values()
+        await asyncio.gather(*(nanny.close(timeout=END_S) for nanny in nannies))
+
+    try:
+        yield
+    except BaseException:
+        cluster.sync(end)
+        raise
 
 
 @contextmanager
@@ -268,12 +269,8 @@ def _connected(scheduler: str) -> Iterator["Client"]:
     Raises:
         InputError: If there is no such scheduler.
     """
-    try:
-        from distributed import Client
-    except ImportError as error:
-        raise InputError(
-            "--scheduler needs Dask; install it with pip install 'satAOI-geo[cluster]'"
-        ) from error
+    from distributed import Client
+
     try:
         client = Client(scheduler, timeout=CONNECT_S)
     except (OSError, ValueError) as error:
@@ -317,19 +314,19 @@ def _version() -> str:
     return satAOI_geo.__version__
 
 
-def _died() -> LimitError:
+def _died(error: "KilledWorker") -> LimitError:
     return LimitError(
         "the processes that were given it died, one after the other; most often memory runs out: "
         "give a coarser --step or fewer --workers",
-        limit="attempts",
-        value=MAX_ATTEMPTS,
-        allowed=MAX_ATTEMPTS,
+        limit="deaths",
+        value=error.allowed_failures + 1,
+        allowed=error.allowed_failures,
     )
 
 
 def _all_lost() -> LimitError:
     return LimitError(
-        "the scheduler has lost all its workers; start some and run this again",
+        "all workers are lost; run this again, with --scheduler after starting some",
         limit="workers",
         value=0,
         allowed=1,
