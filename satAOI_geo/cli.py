@@ -315,19 +315,19 @@ def answer(
     from satAOI_adapters.robot_read import robot_from
     from satAOI_adapters.terminal import progress, say_note
 
-    compiled = kernel_cache.prepare()
+    kernel_cache.prepare()
     # what is cheap to refuse comes first
     robot = robot_from(options["robot"])
     settings = settings_of(options, exact_outline=exact_outline)
     with progress(quiet=quiet) as told:
         plan = read(path, options, progress=told)
-    # numba, which is slow to load, only once there is a plan
+    # what is slow to load only once there is a plan
     from satAOI_geo.pipeline import area_of_interest
 
     mark = None if options["start"] is None else mark_of(options["start"], plan)
-    if not (compiled or quiet):
-        say_note("first run of this version: compiling takes some seconds, once")
-    if not compiled:
+    if not kernel_cache.are_compiled():
+        if not quiet:
+            say_note("first run of this version: compiling takes some seconds, once")
         kernel_cache.compile_beside()
     with progress(quiet=quiet) as told:
         return area_of_interest(plan, robot, settings, start=mark, progress=told, crew=crew)

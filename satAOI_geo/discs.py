@@ -14,10 +14,10 @@ triple 21, 28, 35 alone puts dozens of circles through one point, and discs 70 s
 import math
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
 from satAOI_geo.intervals import set_bits
+from satAOI_geo.kernels import filled, helper, kernel
 from satAOI_geo.lattice import Words
 from satAOI_geo.nodes import Nodes, from_above, from_below, from_left, from_right
 from satAOI_geo.plan import BoolArray, FloatArray, IntArray
@@ -95,8 +95,12 @@ def boundary(reached: Nodes, radius: float) -> Arcs:
     side = math.ceil(radius)
     nodes, first = _sorted(_exposed(reached) if is_fine else reached, side)
     # each disc looked at parts one gap in two at most: 8 neighbours, then the exposed nodes
-    gaps = np.empty((1 + 8 + len(nodes), 6))
-    table = _uncovered(reached.words, nodes, first, side, gaps, radius).reshape(-1, 7)
+    gaps = np.empty((2, 1 + 8 + len(nodes), 6))
+    table = filled(
+        lambda room: _uncovered(reached.words, nodes, first, side, gaps, radius, room),
+        # most exposed nodes have one arc
+        np.empty((2 * len(nodes), 7)),
+    )
     return _linked(table[:, :2].astype(np.int64), table[:, 2:4], table[:, 4:6], table[:, 6])
 
 
@@ -148,8 +152,18 @@ def _linked(nodes: IntArray, begins: FloatArray, ends: FloatArray, spans_rad: Fl
     successors = np.empty(len(nodes), dtype=np.int64)
     ending = np.lexsort((nodes[:, 0], nodes[:, 1], end_labels))
     successors[ending] = np.lexsort((nodes[:, 0], nodes[:, 1], begin_labels))
-    order, loops = _simple_loops(successors, begin_labels, len(points))
+    order, loops = _in_loops(successors, begin_labels, len(points))
     return Arcs(nodes[order], points[begin_labels[order]], spans_rad[order], loops)
+
+
+def _in_loops(successors: IntArray, labels: IntArray, n_labels: int) -> tuple[IntArray, IntArray]:
+    """The arcs in the order of loops, and where each loop begins, see `_simple_loops`."""
+    n = successors.size
+    walked = np.zeros(n, dtype=np.bool_)
+    place = np.full(n_labels, -1)
+    way, order, loops = (np.empty(n + 1, dtype=np.int64) for _ in range(3))
+    n_loops = _simple_loops(successors, labels, walked, place, way, order, loops)
+    return order[: loops[n_loops]], loops[: n_loops + 1]
 
 
 def _welded(ends: FloatArray) -> tuple[FloatArray, IntArray]:
@@ -181,7 +195,7 @@ def _chained(values: FloatArray, order: IntArray, apart: BoolArray) -> IntArray:
     return numbers
 
 
-@numba.njit(nogil=True, cache=True)
+@kernel("void(const int64[:], const int32[:], const int32[:], const int64[:], uint64[:, :], int64)")
 def _cover(
     first: IntArray,
     begin: Int32Array,
@@ -203,7 +217,10 @@ def _cover(
                 set_bits(covered[iy], left, right)
 
 
-@numba.njit(nogil=True, cache=True)
+@kernel(
+    "int64(const uint64[:, :], const int64[:, :], const int64[:, :], int64, float64[:, :, :], "
+    "float64, float64[:, :])"
+)
 def _uncovered(
     reached: Words,
     nodes: IntArray,
@@ -211,30 +228,31 @@ def _uncovered(
     side: int,
     gaps: FloatArray,
     radius: float,
-) -> FloatArray:
-    """The arcs that no other disc covers, unordered, as 7 numbers each in one flat array.
-
-    They are x and y of the node, of the arc's begin and of its end, and the arc's angle.
+    arcs: FloatArray,
+) -> int:
+    """Write the arcs that no other disc covers, unordered, and return how many there are.
 
     Args:
         reached: The reached nodes, shape (n_rows, n_words).
         nodes: The exposed nodes, see `_sorted`.
         first: Where those of each square begin.
         side: Of a square.
-        gaps: Room for the gaps of one circle, see `BEGIN`.
+        gaps: Room for the gaps of one circle, see `BEGIN`, and for those it had before.
         radius: ρ.
+        arcs: Room for 7 numbers an arc: x and y of the node, of the arc's begin and of its end,
+            and the arc's angle.
     """
-    numbers = [0.0 for _ in range(0)]
+    n_arcs = 0
     for k in range(nodes.shape[0]):
         x, y = nodes[k, 0], nodes[k, 1]
-        n = _cut_by_neighbours(gaps, reached, x, y, radius)
-        n = _cut_by_exposed(gaps, n, nodes, first, side, x, y, radius)
+        n = _cut_by_neighbours(gaps[0], reached, x, y, radius)
+        n = _cut_by_exposed(gaps[0], n, gaps[1], nodes, first, side, x, y, radius)
         for gap in range(n):
-            _append_arcs(numbers, gaps[gap], float(x), float(y), radius)
-    return np.array(numbers)
+            n_arcs = _append_arcs(arcs, n_arcs, gaps[0, gap], float(x), float(y), radius)
+    return n_arcs
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _cut_by_neighbours(gaps: FloatArray, reached: Words, x: int, y: int, radius: float) -> int:
     """Write what the 8 neighbours leave of the circle about (x, y), and return how many gaps.
 
@@ -251,10 +269,11 @@ def _cut_by_neighbours(gaps: FloatArray, reached: Words, x: int, y: int, radius:
     return n
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _cut_by_exposed(
     gaps: FloatArray,
     n: int,
+    before: FloatArray,
     nodes: IntArray,
     first: IntArray,
     side: int,
@@ -268,7 +287,8 @@ def _cut_by_exposed(
     ρ + 2ρ·sin(angle / 4) of its middle. For the gap of a straight wall that is little over ρ,
     and hardly any node that is not a neighbour comes so close.
     """
-    before = gaps[:n].copy()
+    for k in range(n):
+        _copy(gaps[k], before[k])
     for k in range(n):
         begin_rad, end_rad = before[k, BEGIN], before[k, END]
         middle_rad = (begin_rad + end_rad) / 2
@@ -286,14 +306,14 @@ def _cut_by_exposed(
     return n
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _squares(middle: float, reach: float, side: int, n_squares: int) -> tuple[int, int]:
     """The squares, from the first up to, not including, the last, within reach of a coordinate."""
     first = max(0, math.floor(middle - reach) // side)
     return first, max(first, min(n_squares, math.ceil(middle + reach) // side + 1))
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _cut(gaps: FloatArray, n: int, dx: int, dy: int, radius: float) -> int:
     """Take what the open disc at (dx, dy) from the node covers out of n gaps; return how many.
 
@@ -329,7 +349,7 @@ def _cut(gaps: FloatArray, n: int, dx: int, dy: int, radius: float) -> int:
     return n
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _set_end(gap: FloatArray, end: int, direction_rad: float, dx: int, dy: int) -> None:
     """Let a gap begin (`BEGIN`) or end (`END`) in a direction, because of the disc at (dx, dy)."""
     gap[end] = direction_rad
@@ -337,29 +357,42 @@ def _set_end(gap: FloatArray, end: int, direction_rad: float, dx: int, dy: int) 
     gap[OPENER + 2 * end + 1] = dy
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _copy(gap: FloatArray, to: FloatArray) -> None:
     """Copy a gap; number by number, since assigning arrays takes longer to compile."""
     for column in range(gap.size):
         to[column] = gap[column]
 
 
-@numba.njit(nogil=True, cache=True)
-def _append_arcs(numbers: list[float], gap: FloatArray, x: float, y: float, radius: float) -> None:
-    """Append a gap in the circle about (x, y) as an arc, or as two if over half a circle."""
+@helper
+def _append_arcs(
+    arcs: FloatArray, n: int, gap: FloatArray, x: float, y: float, radius: float
+) -> int:
+    """Append a gap in the circle about (x, y) to n arcs, as two if over half a circle; see `_put`.
+
+    Returns how many there are then.
+    """
     begin_x, begin_y = _crossing(gap[OPENER], gap[OPENER + 1], 1, radius)
     end_x, end_y = _crossing(gap[CLOSER], gap[CLOSER + 1], -1, radius)
     span_rad = gap[END] - gap[BEGIN]
     if span_rad <= math.pi:
-        numbers.extend((x, y, x + begin_x, y + begin_y, x + end_x, y + end_y, span_rad))
-        return
+        return _put(arcs, n, (x, y, x + begin_x, y + begin_y, x + end_x, y + end_y, span_rad))
     middle_rad = gap[BEGIN] + span_rad / 2
     middle_x, middle_y = x + radius * math.cos(middle_rad), y + radius * math.sin(middle_rad)
-    numbers.extend((x, y, x + begin_x, y + begin_y, middle_x, middle_y, span_rad / 2))
-    numbers.extend((x, y, middle_x, middle_y, x + end_x, y + end_y, span_rad / 2))
+    n = _put(arcs, n, (x, y, x + begin_x, y + begin_y, middle_x, middle_y, span_rad / 2))
+    return _put(arcs, n, (x, y, middle_x, middle_y, x + end_x, y + end_y, span_rad / 2))
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
+def _put(arcs: FloatArray, n: int, arc: tuple[float, ...]) -> int:
+    """Write an arc as number n, if there is room for it; the next number."""
+    if n < arcs.shape[0]:
+        for column in range(7):
+            arcs[n, column] = arc[column]
+    return n + 1
+
+
+@helper
 def _crossing(dx: float, dy: float, side: int, radius: float) -> tuple[float, float]:
     """Where the circle about (dx, dy) meets that about (0, 0): on its left for side 1, else -1.
 
@@ -372,7 +405,7 @@ def _crossing(dx: float, dy: float, side: int, radius: float) -> tuple[float, fl
     return (dx - dy * across) / 2, (dy + dx * across) / 2
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _spread(dx: float, dy: float, radius: float) -> float:
     """Tangent of half the angle over which the disc at (dx, dy) covers the circle at (0, 0).
 
@@ -387,21 +420,36 @@ def _spread(dx: float, dy: float, radius: float) -> float:
     return math.sqrt(excess) if excess > 0 else -1.0
 
 
-@numba.njit(nogil=True, cache=True)
+@kernel("int64(const int64[:], const int64[:], bool[:], int64[:], int64[:], int64[:], int64[:])")
 def _simple_loops(
-    successors: IntArray, labels: IntArray, n_labels: int
-) -> tuple[IntArray, IntArray]:
-    """The arcs loop after loop, and where each loop begins; no loop has a label twice.
+    successors: IntArray,
+    labels: IntArray,
+    walked: BoolArray,
+    place: IntArray,
+    way: IntArray,
+    order: IntArray,
+    loops: IntArray,
+) -> int:
+    """Write the arcs loop after loop, and where each loop begins; no loop has a label twice.
 
     Walks along the arcs and keeps the way since the start. Where the walk comes to a point that
     is on the way already, the way since then is a loop and is taken off.
+
+    Args:
+        successors: The arc that follows on each of n arcs.
+        labels: The point that each begins at, as a number.
+        walked: Shape (n,), False.
+        place: -1 for each point.
+        way: Room for n arcs.
+        order: Room for n arcs.
+        loops: Room for n + 1 begins; the last one is where the last loop ends.
+
+    Returns:
+        How many loops there are.
     """
-    n = successors.size
-    order, loops = [0 for _ in range(0)], [0]
-    walked = np.zeros(n, dtype=np.bool_)
-    place = np.full(n_labels, -1)
-    way = np.empty(n, dtype=np.int64)
-    for start in range(n):
+    n_loops = n_ordered = 0
+    loops[0] = 0
+    for start in range(successors.size):
         length = 0
         arc = start
         while not walked[arc]:
@@ -413,8 +461,10 @@ def _simple_loops(
             since = place[labels[arc]]
             if since >= 0:
                 for k in range(since, length):
-                    order.append(way[k])
+                    order[n_ordered] = way[k]
                     place[labels[way[k]]] = -1
-                loops.append(len(order))
+                    n_ordered += 1
+                n_loops += 1
+                loops[n_loops] = n_ordered
                 length = since
-    return np.array(order), np.array(loops)
+    return n_loops

@@ -14,13 +14,14 @@ Coordinates inside the kernels are lattice units: node [iy, ix] lies at (ix, iy)
 
 import math
 from dataclasses import dataclass, replace
+from typing import Final
 
-import numba
 import numpy as np
 from shapely.geometry import LineString
 
 from satAOI_geo.convex import convex_pieces
 from satAOI_geo.engine import AtRest
+from satAOI_geo.kernels import filled, helper, kernel
 from satAOI_geo.lattice import Lattice, Words
 from satAOI_geo.plan import (
     CONTACT_MM,
@@ -32,6 +33,9 @@ from satAOI_geo.plan import (
     polygons_in,
 )
 from satAOI_geo.robot import Part, Robot
+
+BARRED: Final = 256
+"""Steps that there is room for at first: most parts bar none, or a few, between their ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +120,7 @@ class Intervals:
     def at_rest(self, part: Part) -> AtRest:
         """The nodes at which the part touches something, and the steps between them."""
         words = self.lattice.no_nodes()
-        return AtRest(words, self._block(words, part, watch=True).reshape(-1, 3))
+        return AtRest(words, self._block(words, part, watch=True))
 
     def band(self, rows: slice) -> "Intervals":
         """An engine for some rows of the lattice, with start and stop."""
@@ -137,19 +141,30 @@ class Intervals:
         lattice, pieces = self.lattice, self.pieces
         # -K: a half turn keeps the sense of rotation
         mirrored = _from_lowest(-part.corners_mm / lattice.step_mm)
-        return _block(
-            words,
-            lattice.first_row,
-            lattice.n_columns,
-            np.ascontiguousarray(mirrored[:, 0]),
-            np.ascontiguousarray(mirrored[:, 1]),
-            (part.radius_mm + self.keep_mm) / lattice.step_mm,
-            pieces.x,
-            pieces.y,
-            pieces.first,
-            pieces.top,
-            pieces.radius,
-            watch,
+        part_x, part_y = np.ascontiguousarray(mirrored.T)
+        reach = (part.radius_mm + self.keep_mm) / lattice.step_mm
+        # no piece has more corners than all have together
+        corners = np.empty((2, pieces.x.size + part_x.size + 1))
+        flanks = np.empty((2, lattice.n_rows))
+        return filled(
+            lambda barred: _block(
+                words,
+                lattice.first_row,
+                lattice.n_columns,
+                part_x,
+                part_y,
+                reach,
+                pieces.x,
+                pieces.y,
+                pieces.first,
+                pieces.top,
+                pieces.radius,
+                corners,
+                flanks,
+                watch,
+                barred,
+            ),
+            np.empty((BARRED, 3), dtype=np.int64),
         )
 
 
@@ -174,7 +189,11 @@ def _from_lowest(corners: FloatArray) -> FloatArray:
     return np.roll(corners, -lowest, axis=0)
 
 
-@numba.njit(nogil=True, cache=True)
+@kernel(
+    "int64(uint64[:, :], int64, int64, const float64[:], const float64[:], float64, "
+    "const float64[:], const float64[:], const int64[:], const float64[:], const float64[:], "
+    "float64[:, :], float64[:, :], bool, int64[:, :])"
+)
 def _block(
     words: Words,
     first_row: int,
@@ -187,8 +206,11 @@ def _block(
     first: IntArray,
     top: FloatArray,
     radius: FloatArray,
+    corners: FloatArray,
+    flanks: FloatArray,
     watch: bool,  # noqa: FBT001  kernels take no keywords
-) -> IntArray:
+    barred: IntArray,
+) -> int:
     """Set the bits of the lattice points in (piece ⊕ part) ⊕ disc(reach + radius), piece by piece.
 
     The part is already turned by 180°. Lowest corner + lowest corner is the lowest corner of the
@@ -206,20 +228,18 @@ def _block(
         first: The same.
         top: The same.
         radius: The same.
+        corners: Room for x and y of the corners of a sum, the first one twice.
+        flanks: Room for its left and right end in each row.
         watch: Whether to look for steps that a piece bars between their ends.
+        barred: Room for such steps, three numbers each, see `engine.AtRest`.
 
     Returns:
-        The barred steps, three numbers each, see `engine.AtRest`.
+        How many such steps there are.
     """
     n_rows = words.shape[0]
-    longest = 0
-    for piece in range(radius.size):
-        longest = max(longest, first[piece + 1] - first[piece])
-    sum_x = np.empty(longest + part_x.size + 1)
-    sum_y = np.empty(longest + part_x.size + 1)
-    left = np.empty(n_rows)
-    right = np.empty(n_rows)
-    barred = [0 for _ in range(0)]
+    sum_x, sum_y = corners[0], corners[1]
+    left, right = flanks[0], flanks[1]
+    n_barred = 0
     part_top = part_y[_extremes(part_y)[1]]
     for piece in range(radius.size):
         begin, end = first[piece], first[piece + 1]
@@ -239,31 +259,44 @@ def _block(
             if begin_ix <= end_ix:
                 set_bits(words[iy], begin_ix, end_ix)
             elif watch and end_ix >= 0 and begin_ix < n_columns:
-                _append(barred, 0, iy, end_ix)
+                n_barred = _append(barred, n_barred, 0, iy, end_ix)
         if watch:
-            corners = sum_x[:n_corners], sum_y[:n_corners]
-            _bar_steps_up(barred, left, right, first_row, lowest, highest, corners, r, n_columns)
-    return np.array(barred)
+            n_barred = _bar_steps_up(
+                barred,
+                n_barred,
+                left,
+                right,
+                first_row,
+                lowest,
+                highest,
+                sum_x[:n_corners],
+                sum_y[:n_corners],
+                r,
+                n_columns,
+            )
+    return n_barred
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _columns(left: float, right: float, n_columns: int) -> tuple[int, int]:
     """First and last column from left to right; the last comes before the first where none is."""
     return max(0, math.ceil(left)), min(n_columns - 1, math.floor(right))
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _bar_steps_up(
-    barred: list[int],
+    barred: IntArray,
+    n_barred: int,
     left: FloatArray,
     right: FloatArray,
     first_row: int,
     lowest: int,
     highest: int,
-    corners: tuple[FloatArray, FloatArray],
+    x: FloatArray,
+    y: FloatArray,
     r: float,
     n_columns: int,
-) -> None:
+) -> int:
     """Append the steps up that a rounded polygon meets between their ends only.
 
     From one row to the next the polygon, which is convex, spans from the lesser of its left ends
@@ -271,17 +304,21 @@ def _bar_steps_up(
     these between the two.
 
     Args:
-        barred: Three numbers a step, see `engine.AtRest`.
+        barred: Room for three numbers a step, see `engine.AtRest`.
+        n_barred: How many steps there are before.
         left: Left end in the rows that the polygon meets, from first_row on.
         right: Right end.
         first_row: See the caller.
         lowest: The first row that the polygon meets, on the lattice or not.
         highest: The last one.
-        corners: x and y of the polygon's corners.
+        x: Of the polygon's corners.
+        y: The same.
         r: By how much it is rounded.
         n_columns: Columns of the lattice.
+
+    Returns:
+        How many steps there are then.
     """
-    x, y = corners
     leftmost, rightmost = _extremes(x)
     leftmost_row, rightmost_row = math.floor(y[leftmost]), math.floor(y[rightmost])
     last_row = first_row + left.size - 1
@@ -311,11 +348,12 @@ def _bar_steps_up(
             elif next_begin_ix <= ix <= next_end_ix:
                 ix = next_end_ix
             else:
-                _append(barred, 1, iy, ix)
+                n_barred = _append(barred, n_barred, 1, iy, ix)
             ix += 1
+    return n_barred
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _extremes(values: FloatArray) -> tuple[int, int]:
     """Where the least and the greatest value are; numpy's own takes a second to compile."""
     least = greatest = 0
@@ -327,15 +365,15 @@ def _extremes(values: FloatArray) -> tuple[int, int]:
     return least, greatest
 
 
-@numba.njit(nogil=True, cache=True)
-def _append(barred: list[int], rows_up: int, iy: int, ix: int) -> None:
-    """Append a step."""
-    barred.append(rows_up)
-    barred.append(iy)
-    barred.append(ix)
+@helper
+def _append(barred: IntArray, n: int, rows_up: int, iy: int, ix: int) -> int:
+    """Write a step as number n, if there is room for it; the next number."""
+    if n < barred.shape[0]:
+        barred[n, 0], barred[n, 1], barred[n, 2] = rows_up, iy, ix
+    return n + 1
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _minkowski_sum(
     ax: FloatArray,
     ay: FloatArray,
@@ -382,7 +420,7 @@ def _minkowski_sum(
     return n, n_rising
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _right_flank(
     x: FloatArray,
     y: FloatArray,
@@ -411,7 +449,7 @@ def _right_flank(
     _arc(vx, vy, r, 1.0, iy, high, first_row, right)
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _left_flank(
     x: FloatArray,
     y: FloatArray,
@@ -444,7 +482,7 @@ def _left_flank(
     _arc(vx, vy, r, -1.0, iy, high, first_row, left)
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _arc(
     vx: float,
     vy: float,
@@ -463,7 +501,7 @@ def _arc(
     return next_iy
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _line(
     x0: float, y0: float, slope: float, iy: int, last: float, first_row: int, flank: FloatArray
 ) -> int:
@@ -474,7 +512,7 @@ def _line(
     return next_iy
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def set_bits(row: Words, begin: int, end: int) -> None:
     """Set bits begin .. end of a row of words."""
     every = np.uint64(0xFFFFFFFFFFFFFFFF)

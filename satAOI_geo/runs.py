@@ -7,11 +7,11 @@ states of a hall make some 10⁶ runs; connectivity is union-find over these.
 from dataclasses import dataclass
 from typing import TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from satAOI_geo.intervals import set_bits
+from satAOI_geo.kernels import helper, kernel
 from satAOI_geo.lattice import Words
 from satAOI_geo.nodes import Nodes, from_right
 from satAOI_geo.plan import IntArray
@@ -150,7 +150,7 @@ def paint(words: Words, row: Int32Array, begin: Int32Array, end: Int32Array) -> 
     _paint(words, row, begin, end)
 
 
-@numba.njit(nogil=True, cache=True)
+@kernel("void(const uint64[:, :], const uint64[:, :], int64[:])")
 def _count_runs(free: Words, right: Words, first: IntArray) -> None:
     """Write how many runs begin in row iy to first[iy + 1]."""
     for iy in range(free.shape[0]):
@@ -163,7 +163,7 @@ def _count_runs(free: Words, right: Words, first: IntArray) -> None:
         first[iy + 1] = n
 
 
-@numba.njit(nogil=True, cache=True)
+@kernel("void(const uint64[:, :], const uint64[:, :], const int64[:], int32[:], int32[:])")
 def _fill_runs(
     free: Words, right: Words, first: IntArray, begin: Int32Array, end: Int32Array
 ) -> None:
@@ -186,7 +186,7 @@ def _fill_runs(
                 n_ended += 1
 
 
-@numba.njit(nogil=True, cache=True)
+@kernel("int64(const uint64[:, :], const int64[:], const int64[:], const int32[:], int32[:, :])")
 def _links(
     allowed: Words, first_a: IntArray, first_b: IntArray, end: Int32Array, found: Int32Array
 ) -> int:
@@ -210,7 +210,7 @@ def _links(
     return n
 
 
-@numba.njit(nogil=True, cache=True)
+@kernel("bool(const int32[:], const uint64[:, :], const int64[:], const int64[:], const int32[:])")
 def _are_apart(
     parents: Int32Array, ends: Words, first_a: IntArray, first_b: IntArray, end: Int32Array
 ) -> bool:
@@ -233,7 +233,7 @@ def _are_apart(
     return False
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _found(parents: Int32Array, run: int) -> int:
     """The root of a run, nothing changed on the way."""
     while parents[run] != run:
@@ -241,7 +241,7 @@ def _found(parents: Int32Array, run: int) -> int:
     return run
 
 
-@numba.njit(nogil=True, cache=True)
+@kernel("void(int32[:], const int32[:, :])")
 def _unite(parents: Int32Array, pairs: Int32Array) -> None:
     """Hang the higher of two roots below the lower, pair by pair."""
     for k in range(pairs.shape[0]):
@@ -252,7 +252,7 @@ def _unite(parents: Int32Array, pairs: Int32Array) -> None:
             parents[root_a] = root_b
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _root(parents: Int32Array, run: int) -> int:
     """The root of a run, halving the path on the way."""
     while parents[run] != run:
@@ -261,14 +261,14 @@ def _root(parents: Int32Array, run: int) -> int:
     return run
 
 
-@numba.njit(nogil=True, cache=True)
+@kernel("void(int32[:])")
 def _flatten(parents: Int32Array) -> None:
     """Make every run point at its root; roots are the lowest of their component."""
     for run in range(parents.size):
         parents[run] = parents[parents[run]]
 
 
-@numba.njit(nogil=True, cache=True)
+@kernel("void(const int64[:, :, :], const int32[:], const int32[:], int64, int64, int64[:, :])")
 def _holding(
     first: IntArray, begin: Int32Array, end: Int32Array, iy: int, ix: int, found: IntArray
 ) -> None:
@@ -288,14 +288,14 @@ def _holding(
             found[a1, swing] = run if run < last and begin[run] <= ix else -1
 
 
-@numba.njit(nogil=True, cache=True)
+@kernel("void(uint64[:, :], const int32[:], const int32[:], const int32[:])")
 def _paint(words: Words, row: Int32Array, begin: Int32Array, end: Int32Array) -> None:
     """Set the bits of runs."""
     for run in range(row.size):
         set_bits(words[row[run]], begin[run], end[run])
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _next_bit(row: Words, begin: int) -> int:
     """The first set bit of a row of words from `begin` on, or -1."""
     word = begin >> 6
@@ -310,13 +310,13 @@ def _next_bit(row: Words, begin: int) -> int:
     return word * 64 + _lowest_bit(bits)
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _lowest_bit(bits: np.uint64) -> int:
     """Number of the lowest set bit: how many lie below it."""
     return _n_bits((bits & (~bits + np.uint64(1))) - np.uint64(1))
 
 
-@numba.njit(nogil=True, cache=True)
+@helper
 def _n_bits(bits: np.uint64) -> int:
     """Number of set bits, summed in pairs, nibbles and octets."""
     bits -= bits >> np.uint64(1) & np.uint64(0x5555555555555555)

@@ -6,16 +6,17 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final, Protocol
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from satAOI_geo.aoi import Aoi, Outline, areas
 from satAOI_geo.discs import covered_cells
+from satAOI_geo.kernels import kernel
 from satAOI_geo.lattice import WORD_BITS, Lattice
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.reach import PoseComponents, State
+from satAOI_geo.runs import Int32Array
 
 ZONE_MM2: Final = 500_000.0
 """Smaller zones are not worth a set-down: half a square metre is little more than one disc."""
@@ -204,16 +205,27 @@ def set_down(components: PoseComponents, label: int) -> State:
     return components.straightest(iy + rows.start, ix + columns.start, label)
 
 
-@numba.njit(nogil=True, cache=True)
 def _deepest(nodes: BoolArray) -> tuple[int, int]:
-    """The first of the nodes that are in the middle of the largest square of nodes.
-
-    The depth of a node is how many rings of nodes are around it, and one more. From the four
-    neighbours before it in the raster's order, and from the four after it, it is one more at most.
-    """
+    """The first of the nodes that are in the middle of the largest square of nodes."""
     n_rows, n_columns = nodes.shape
     # a rim of no nodes
     depth = np.zeros((n_rows + 2, n_columns + 2), dtype=np.int32)
+    iy, ix = divmod(_deepest_place(nodes, depth), n_columns)
+    return iy, ix
+
+
+@kernel("int64(const bool[:, :], int32[:, :])")
+def _deepest_place(nodes: BoolArray, depth: Int32Array) -> int:
+    """The first of the deepest nodes, as row · columns + column; see `_deepest`.
+
+    The depth of a node is how many rings of nodes are around it, and one more. From the four
+    neighbours before it in the raster's order, and from the four after it, it is one more at most.
+
+    Args:
+        nodes: Shape (n_rows, n_columns).
+        depth: 0 at each of them and at a rim around them.
+    """
+    n_rows, n_columns = nodes.shape
     for iy in range(1, n_rows + 1):
         for ix in range(1, n_columns + 1):
             if nodes[iy - 1, ix - 1]:
@@ -226,7 +238,8 @@ def _deepest(nodes: BoolArray) -> tuple[int, int]:
             depth[iy, ix] = min(depth[iy, ix], min(below, depth[iy, ix + 1]) + 1)
             if depth[iy, ix] >= best:
                 best, best_iy, best_ix = depth[iy, ix], iy, ix
-    return best_iy - 1, best_ix - 1
+    place: int = (best_iy - 1) * n_columns + best_ix - 1
+    return place
 
 
 def _area_mm2(components: Components, label: int, lattice: Lattice, disc_mm: float) -> float:

@@ -6,8 +6,11 @@ from pathlib import Path
 
 import pytest
 
-import satAOI_geo
-from satAOI_adapters.kernel_cache import VARIABLE, prepare
+from satAOI_adapters import kernel_cache
+from satAOI_adapters.kernel_cache import VARIABLE, are_compiled, prepare
+from satAOI_geo.cli import main
+from satAOI_geo.kernels import KERNELS
+from tests.command_line import drawn_room
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the folders of Linux")
 
@@ -22,33 +25,34 @@ def test_kernels_are_kept_in_the_users_cache(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert not prepare()
-    assert Path(os.environ[VARIABLE]).is_relative_to(tmp_path / "satAOI-geo")
-
-
-def test_kernels_of_changed_sources_make_room_for_new_ones(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    caches = tmp_path / "satAOI-geo"
-    outdated = caches / f"kernels-{satAOI_geo.__version__}-0123456789ab"
-    of_another_version = caches / "kernels-0.0.0-0123456789ab"
-    outdated.mkdir(parents=True)
-    of_another_version.mkdir()
     prepare()
-    assert not outdated.exists()
-    assert of_another_version.exists()
+    assert Path(os.environ[VARIABLE]).is_relative_to(tmp_path / "satAOI-geo")
+    assert not are_compiled()
 
 
-def test_kernels_compiled_for_this_python_are_found_again(
+def test_kernels_are_compiled_when_all_of_them_are(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(VARIABLE, str(tmp_path))
-    version = f"py{sys.version_info.major}{sys.version_info.minor}"
-    (tmp_path / "freespace.fill-1.py200.nbi").touch()
-    assert not prepare()
-    (tmp_path / f"freespace.fill-1.{version}.nbi").touch()
-    assert prepare()
+    assert not are_compiled()
+    for kernel in KERNELS:
+        Path(kernel._path()).touch()
+    assert are_compiled()
+    Path(KERNELS[0]._path()).unlink()
+    assert not are_compiled()
+
+
+def test_a_first_run_says_that_it_compiles(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    started = []
+    monkeypatch.setattr(kernel_cache, "compile_beside", lambda: started.append(1))
+    plan = str(drawn_room(tmp_path / "room.dxf"))
+    for kept, n_started in ((False, 1), (True, 1)):
+        monkeypatch.setattr(kernel_cache, "are_compiled", lambda kept=kept: kept)
+        assert main([plan, "--report", str(tmp_path / "report.json")]) == 0
+        assert ("compiling takes some seconds" in capsys.readouterr().err) is not kept
+        assert len(started) == n_started
 
 
 def test_without_a_place_to_write_they_last_for_the_run(
@@ -57,7 +61,7 @@ def test_without_a_place_to_write_they_last_for_the_run(
     not_a_folder = tmp_path / "file"
     not_a_folder.touch()
     monkeypatch.setenv("XDG_CACHE_HOME", str(not_a_folder))
-    assert not prepare()
+    prepare()
     assert Path(os.environ[VARIABLE]).is_dir()
     Path(os.environ[VARIABLE]).rmdir()
 

@@ -1,33 +1,34 @@
-"""Where compiled kernels are kept between runs: one folder a user and state of the program."""
+"""Where compiled kernels are kept between runs: one folder a user and version of the program."""
 
 import atexit
 import contextlib
-import hashlib
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
+from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import satAOI_geo
 
+if TYPE_CHECKING:
+    from satAOI_geo.kernels import Kernel
+
 VARIABLE = "NUMBA_CACHE_DIR"
-"""Read by numba when it is imported; a value that the user set is left alone."""
+"""Read by `satAOI_geo.kernels`; a value that the user set is left alone."""
 
 
-def prepare() -> bool:
-    """Choose the folder, before numba is imported; whether kernels are in it already.
-
-    The program's own folder may belong to somebody else, and numba refuses to start when it
-    finds no place to write to.
-    """
+def prepare() -> None:
+    """Choose the folder; the program's own may belong to somebody else."""
     if VARIABLE not in os.environ:
         os.environ[VARIABLE] = str(_own_folder())
-    # numba names its index files after the function and the Python they are for
-    python = f"py{sys.version_info.major}{sys.version_info.minor}"
-    indices = Path(os.environ[VARIABLE]).rglob("*.nbi")
-    return any(python in index.name for index in indices)
+
+
+def are_compiled() -> bool:
+    """Whether all kernels are in the folder, none to be compiled."""
+    return all(kernel.is_kept() for kernel in _kernels())
 
 
 def compile_beside() -> None:
@@ -46,23 +47,18 @@ def compile_beside() -> None:
 
 
 def compile_last() -> None:
-    """Compile the kernels of runs and of areas, on the smallest of them."""
-    import numpy as np
+    """Compile all kernels that are not compiled, from the last one that a run calls on."""
+    for kernel in reversed(_kernels()):
+        kernel.ready()
 
-    from satAOI_geo.discs import boundary, covered_cells
-    from satAOI_geo.nodes import Nodes
-    from satAOI_geo.runs import Meeting, Runs, paint, roots, rows_of, unite
 
-    reached = Nodes.of(np.ones((3, 3), dtype=np.bool_))
-    runs = Runs.joined([[rows_of(reached)]])
-    parents = np.arange(3, dtype=np.int32)
-    meeting = Meeting.upwards(runs, (0, 0))
-    meeting.are_apart(parents, reached.words)
-    unite(parents, meeting.links(reached.words))
-    paint(reached.words, roots(parents), runs.begin, runs.end)
-    boundary(reached, 1.5)
-    covered_cells(reached, 1.5)
-    runs.holding(1, 1)
+def _kernels() -> "list[Kernel[..., Any]]":
+    """All kernels, in about the order in which a run calls them."""
+    # it imports the modules that have kernels
+    import_module("satAOI_geo.pipeline")
+    from satAOI_geo.kernels import KERNELS
+
+    return KERNELS
 
 
 def _own_folder() -> Path:
@@ -71,11 +67,8 @@ def _own_folder() -> Path:
     A shared name in the folder for temporary files would let others slip their code in.
     """
     try:
-        caches = _user_caches() / "satAOI-geo"
-        folder = caches / f"kernels-{satAOI_geo.__version__}-{_state_of_sources()}"
-        if not folder.is_dir():
-            folder.mkdir(parents=True, exist_ok=True)
-            _drop_others_of_this_version(folder)
+        folder = _user_caches() / "satAOI-geo" / f"kernels-{satAOI_geo.__version__}"
+        folder.mkdir(parents=True, exist_ok=True)
         if os.access(folder, os.W_OK):
             return folder
     except (OSError, RuntimeError):
@@ -84,23 +77,6 @@ def _own_folder() -> Path:
     folder = Path(tempfile.mkdtemp(prefix="satAOI-geo-"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
-
-
-def _state_of_sources() -> str:
-    """A name for the sources of kernels; numba cannot read kernels whose types have changed."""
-    sources = sorted(Path(satAOI_geo.__file__).parent.glob("*.py"))
-    digest = hashlib.sha256()
-    for text in (file.read_bytes() for file in sources):
-        if b"import numba" in text or b"from numba" in text:
-            digest.update(text)
-    return digest.hexdigest()[:12]
-
-
-def _drop_others_of_this_version(folder: Path) -> None:
-    """Remove kernels of the same version compiled from sources that have changed since."""
-    for other in folder.parent.glob(f"kernels-{satAOI_geo.__version__}-*"):
-        if other != folder:
-            shutil.rmtree(other, ignore_errors=True)
 
 
 def _user_caches() -> Path:
