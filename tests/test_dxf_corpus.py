@@ -56,7 +56,7 @@ DRAWINGS = {
     "d12": Expected({}, "", (26, 30), frozenset({"wall-on-door-layer"})),
     "d13": Expected({}, "", (20, 22), frozenset({"all-walls"})),
     "d14": Expected({}, "", (135, 142), frozenset({"wall-filled"})),
-    "d15": Expected({"units": "mm"}, "R12 has no unit; tile joints are walls", (700, 1000)),
+    "d15": Expected({"units": "mm"}, "R12 has no unit", (840, 860), frozenset({"tile-joints"})),
 }
 
 ONE_BUILDING = ("d01", "d02")

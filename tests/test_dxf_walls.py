@@ -353,6 +353,58 @@ def test_fills_on_pattern_layers_count_for_nothing_beside_walls(tmp_path: Path) 
     assert {o.layer for o in plan.obstacles} == {"A-WALL"}
 
 
+def tiled(columns: int, rows: int, *, joint_mm: float = 10.0) -> Drawing:
+    """Tiles of 1 m with joints, as loose lines on layer 0 inside a wall of 200 mm."""
+    document = drawing(floor=False)
+    space = document.modelspace()
+    for i in range(columns):
+        for j in range(rows):
+            left, bottom = 1000.0 * i + joint_mm / 2, 1000.0 * j + joint_mm / 2
+            right, top = left + 1000 - joint_mm, bottom + 1000 - joint_mm
+            corners = [(left, bottom), (right, bottom), (right, top), (left, top)]
+            lines(space, corners, layer="0")
+    right, top = 1000.0 * columns, 1000.0 * rows
+    lines(space, [(0, 0), (right, 0), (right, top), (0, top)], layer="0")
+    outer = [(-200, -200), (right + 200, -200), (right + 200, top + 200), (-200, top + 200)]
+    lines(space, outer, layer="0")
+    return document
+
+
+@pytest.mark.parametrize("joint_mm", [10.0, 0.0])
+def test_joints_of_tiles_are_no_walls_and_what_is_around_them_is(
+    joint_mm: float, tmp_path: Path
+) -> None:
+    document = tiled(6, 5, joint_mm=joint_mm)
+    # a column that cuts a tile
+    lines(
+        document.modelspace(), [(2050, 2050), (2150, 2050), (2150, 2150), (2050, 2150)], layer="0"
+    )
+    plan = plan_of(document, tmp_path)
+    assert "tile-joints" in codes(plan)
+    inside = box(100, 100, 5900, 4900)
+    blocked = shapely.affinity.translate(plan.obstacle_region(), *plan.frame.origin_mm)
+    assert blocked.intersection(inside).equals(box(2050, 2050, 2150, 2150))
+    lines_left = shapely.union_all([o.region() for o in plan.obstacles if o.handle])
+    lines_left = shapely.affinity.translate(lines_left, *plan.frame.origin_mm)
+    assert lines_left.intersection(inside).length == 4 * 100
+    assert plan.floor.area == 6400 * 5400
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(2, 12), (4, 4)])
+def test_equal_rooms_of_which_each_may_have_a_door_or_that_are_few_are_no_tiles(
+    columns: int, rows: int, tmp_path: Path
+) -> None:
+    plan = plan_of(tiled(columns, rows, joint_mm=0.0), tmp_path)
+    assert "tile-joints" not in codes(plan)
+
+
+def test_nothing_is_a_tile_on_a_layer_of_walls(tmp_path: Path) -> None:
+    document = tiled(6, 5)
+    for entity in document.modelspace():
+        entity.dxf.layer = "WALL"
+    assert "tile-joints" not in codes(plan_of(document, tmp_path))
+
+
 def test_walls_on_a_nameless_layer_beside_doors_are_told_by_their_look(tmp_path: Path) -> None:
     document = house(opening_mm=900.0, layer="A-B2321-E")
     space = document.modelspace()

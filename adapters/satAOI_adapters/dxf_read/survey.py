@@ -21,6 +21,7 @@ from satAOI_adapters.dxf_read.meaning import LISTED, Seen, with_meaning
 from satAOI_adapters.dxf_read.opening import open_drawing
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.plans import Drawn
+from satAOI_adapters.dxf_read.tiles import with_tiles
 from satAOI_adapters.dxf_read.units import Known, Unit, unit_of
 from satAOI_adapters.dxf_read.unread import (
     foreign_fault,
@@ -195,7 +196,8 @@ def survey(path: Path, options: ReadOptions) -> Survey:
         known = error
     by_look: tuple[Finding, ...] = ()
     if isinstance(known, Known):
-        near, by_look = with_lookalikes(near, known.unit.mm)
+        look_again = with_tiles if fallback else with_lookalikes
+        near, by_look = look_again(near, known.unit.mm)
     return Survey(
         path=path,
         sha256=opened.sha256,
