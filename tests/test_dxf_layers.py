@@ -1,11 +1,14 @@
 """What layer names mean, and what a user's own file changes about it."""
 
 from dataclasses import replace
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from satAOI_adapters.layers import BUILT_IN, Certainty, Meaning, layer_table
+from satAOI_adapters.layers import BUILT_IN, Certainty, Meaning, is_like, layer_table
 from satAOI_geo.errors import InputError
 
 
@@ -93,6 +96,27 @@ def test_whole_name_is_surer_than_a_part_of_it() -> None:
     assert table.of_layer("WALL").certainty is Certainty.CERTAIN
     assert table.of_layer("A-WALL-FULL").certainty is Certainty.LIKELY
     assert table.of_layer("XYZ").certainty is Certainty.UNKNOWN
+
+
+@given(st.text("ab*", max_size=8), st.text("ab", max_size=8))
+def test_globs_mean_what_they_mean_elsewhere(pattern: str, name: str) -> None:
+    assert is_like(name, pattern) == fnmatchcase(name, pattern)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "name", "fits"),
+    [
+        ("A*B*", "AXB", True),
+        ("A*A", "A", False),
+        ("*AB*BC", "ABC", False),
+        ("?-COLS", "S-COLS", True),
+        ("K[12]*", "K2 new", True),
+        ("K[12]*", "K3", False),
+        ("S-COLS", "S-COLS", True),
+    ],
+)
+def test_a_glob_fits_a_whole_name(pattern: str, name: str, *, fits: bool) -> None:
+    assert is_like(name, pattern) is fits
 
 
 def test_the_built_in_table_is_a_file_that_a_user_could_give() -> None:

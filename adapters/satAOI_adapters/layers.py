@@ -240,8 +240,28 @@ def _matches(pattern: str, name: str) -> bool:
         return pattern[1:] == name
     folded_pattern, folded_name = _folded(pattern), _folded(name)
     if "*" in pattern or "?" in pattern:
-        return fnmatchcase(folded_name, folded_pattern)
+        return is_like(folded_name, folded_pattern)
     return folded_pattern == folded_name or folded_pattern in _words(name)
+
+
+def is_like(name: str, pattern: str) -> bool:
+    """Whether a glob fits the whole name.
+
+    One with no sign but `*` is compared piece by piece: to make regular expressions of the table's
+    patterns takes as long as to read a small drawing.
+    """
+    if "*" not in pattern or "?" in pattern or "[" in pattern:
+        return fnmatchcase(name, pattern)
+    first, *middle, last = pattern.split("*")
+    if not name.startswith(first):
+        return False
+    done = len(first)
+    for part in middle:
+        begin = name.find(part, done)
+        if begin < 0:
+            return False
+        done = begin + len(part)
+    return name.endswith(last) and done + len(last) <= len(name)
 
 
 @cache

@@ -206,8 +206,10 @@ def beside(features: Iterable[Feature]) -> tuple[FloatArray, FloatArray]:
     lengths = np.hypot(*along.T)
     along /= lengths[:, np.newaxis]
     middles = shapely.points(ends.mean(axis=1))
+    # they are in the order of length; for its median numpy would load a library of its own
+    median = (lengths[(lengths.size - 1) // 2] + lengths[lengths.size // 2]) / 2
     own, other = shapely.STRtree([LineString(line) for line in ends]).query(
-        middles, predicate="dwithin", distance=float(np.median(lengths))
+        middles, predicate="dwithin", distance=median
     )
     sines = np.abs(along[own, 0] * along[other, 1] - along[own, 1] * along[other, 0])
     offsets = ends[other, 0] - ends[own].mean(axis=1)
