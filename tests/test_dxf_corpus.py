@@ -53,7 +53,7 @@ DRAWINGS = {
     "d09": Expected({}, "", (160, 172), frozenset({"all-walls", "layer-hidden"})),
     "d10": Expected({"units": "cm"}, "the header names no unit", (240, 250)),
     "d11": Expected({}, "", (1400, 1450), frozenset({"room-outline"})),
-    "d12": Expected({}, "", (26, 30), frozenset({"wall-on-door-layer"})),
+    "d12": Expected({}, "", (28, 29), frozenset({"wall-on-door-layer"})),
     "d13": Expected({}, "", (20, 22), frozenset({"all-walls"})),
     "d14": Expected({}, "", (135, 142), frozenset({"wall-filled"})),
     "d15": Expected({"units": "mm"}, "R12 has no unit", (840, 860), frozenset({"tile-joints"})),

@@ -255,6 +255,26 @@ def test_partition_drawn_on_the_door_layer_is_a_wall(tmp_path: Path) -> None:
     assert "wall-on-door-layer" in codes(plan)
 
 
+def test_stub_between_a_door_and_a_corner_of_such_a_partition_is_wall_and_the_door_is_not(
+    tmp_path: Path,
+) -> None:
+    document = drawing()
+    space = document.modelspace()
+    on = {"layer": "A-DOOR"}
+    # a corner of two walls 100 mm thick; on the one a door, 150 mm from the corner
+    space.add_lwpolyline([(1000, 1000), (1000, 5000), (850, 5000)], dxfattribs=on)
+    space.add_lwpolyline([(1100, 1000), (1100, 5100), (850, 5100)], dxfattribs=on)
+    space.add_line((850, 5000), (850, 5100), dxfattribs=on)
+    space.add_line((1000, 1000), (3000, 1000), dxfattribs=on)
+    space.add_line((1000, 900), (3000, 900), dxfattribs=on)
+    # its threshold joins the stub's face end to end
+    space.add_line((850, 5000), (-50, 5000), dxfattribs=on)
+    rectangle(space, 7000, 7000, 7300, 7300, layer="COLUMN")
+    blocked = plan_of(document, tmp_path).obstacle_region()
+    assert blocked.intersects(box(850, 5000, 1000, 5100))
+    assert not blocked.intersects(box(0, 4990, 840, 5110))
+
+
 def test_drawing_without_a_known_layer_is_all_walls(tmp_path: Path) -> None:
     plan = plan_of(house(opening_mm=900.0, layer="0"), tmp_path)
     assert {obstacle.kind for obstacle in plan.obstacles} == {Kind.WALL}

@@ -22,7 +22,7 @@ from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.groups import linked, tree_of
 from satAOI_adapters.dxf_read.linework import PARALLEL
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
-from satAOI_geo.plan import BoolArray, Finding, FloatArray
+from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
@@ -42,6 +42,9 @@ LEAF_SLACK_MM: Final = 60.0
 WIDEST_RAD: Final = math.radians(190)
 """Doors are drawn open by up to half a turn."""
 
+ABREAST_MM: Final = 20.0
+"""Lines of a window end this close to abreast of each other."""
+
 PARTITION_MM: Final = 2500.0
 """A single straight line longer than this, with another beside it, is the face of a wall."""
 
@@ -60,6 +63,8 @@ def partitions(
     They are open, straight, in no door's block and longer than a leaf. Joined at their ends they
     turn a corner with another such line; or one alone is longer than any opening, has a parallel
     one beside it, and does not span an opening from wall to wall as a garage door's line does.
+    Lines shorter than any leaf that go on from these, and those abreast of them, are the faces of
+    the stubs between a door and the next corner.
 
     Args:
         doors: What is drawn on door layers.
@@ -74,6 +79,7 @@ def partitions(
     is_long = lengths_mm > LEAF_MM
     faces = (lengths_mm > PARTITION_MM) & ~spanning(lines, walls, JAMB_MM) & _in_pairs(lines)
     is_wall = is_long & (_in_corners(lines, is_long) | faces)
+    is_wall |= _stubs(lines, is_wall)
     return [piece for piece, wall in zip(pieces, is_wall, strict=True) if wall]
 
 
@@ -191,7 +197,7 @@ def partition_findings(found: Sequence[Feature]) -> list[Finding]:
         Finding(
             "wall-on-door-layer",
             f"{sum(feature.placed.layer == layer for feature in found)} lines on door layer "
-            f"'{layer}' are too long for doors and taken as walls",
+            f"'{layer}' are too long for doors, or go on from such, and taken as walls",
             "say what the layer is in a file for --layers",
             layer=layer,
         )
@@ -230,16 +236,31 @@ def spanning(
 
 def _in_corners(lines: Sequence[LineString], is_long: BoolArray) -> BoolArray:
     """Which lines are in a chain, joined end to end, with long lines in two directions."""
-    n = len(lines)
-    ends = [line.coords[k] for line in lines for k in (0, -1)]
-    chain = linked(tree_of(ends).query_pairs(CLOSE_GAPS_MM, output_type="ndarray") // 2, n)
+    chain = _chains(lines)
     along = directions(lines)
-    turns = np.zeros(n, dtype=bool)
+    turns = np.zeros(len(lines), dtype=bool)
     for k in np.unique(chain[is_long]):
         (first, *_), members = along[is_long & (chain == k)], chain == k
         sines = along[is_long & members] @ np.array((-first[1], first[0]))
         turns[members] = np.abs(sines).max() > CORNER
     return turns
+
+
+def _chains(lines: Sequence[LineString]) -> IntArray:
+    """The number of the chain, joined end to end, that each line is in."""
+    ends = [line.coords[k] for line in lines for k in (0, -1)]
+    pairs = tree_of(ends).query_pairs(CLOSE_GAPS_MM, output_type="ndarray")
+    return linked(pairs // 2, len(lines))
+
+
+def _stubs(lines: Sequence[LineString], is_wall: BoolArray) -> BoolArray:
+    """Which lines, shorter than any leaf, go on from walls or from what is abreast of these."""
+    chain = _chains(lines)
+    is_short = shapely.length(lines) < LEAST_LEAF_MM
+    joined = is_short & np.isin(chain, chain[is_wall])
+    one, other = abreast(lines).T
+    across = other[joined[one] & is_short[other]]
+    return np.asarray(joined | is_short & np.isin(chain, chain[across]))
 
 
 def directions(lines: Sequence[LineString]) -> FloatArray:
@@ -257,3 +278,22 @@ def _in_pairs(lines: Sequence[LineString]) -> BoolArray:
     long_enough = shapely.length(lines)[other] > PARTITION_MM
     beside = (near != other) & (sines <= PARALLEL) & long_enough
     return np.bincount(near, beside, len(lines)) > 0
+
+
+def abreast(lines: Sequence[LineString]) -> IntArray:
+    """Numbers of lines that run side by side and end side by side, shape (pairs, 2)."""
+    along = directions(lines)
+    one, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=FACES_MM)
+    sines = np.abs(along[one, 0] * along[other, 1] - along[one, 1] * along[other, 0])
+    low, high = _reach(lines, along, one, one), _reach(lines, along, other, one)
+    is_even = (np.abs(low - high) <= ABREAST_MM).all(axis=1)
+    return np.asarray(np.column_stack((one, other))[(sines <= PARALLEL) & is_even])
+
+
+def _reach(
+    lines: Sequence[LineString], along: FloatArray, which: IntArray, of: IntArray
+) -> FloatArray:
+    """From where to where lines reach in the direction of others, shape (n, 2)."""
+    ends = np.array([(line.coords[0], line.coords[-1]) for line in lines])
+    shares = (ends[which] * along[of][:, np.newaxis]).sum(axis=-1)
+    return np.sort(shares, axis=1)

@@ -21,6 +21,7 @@ from satAOI_adapters.dxf_read.curves import Arc
 from satAOI_adapters.dxf_read.doors import (
     FACES_MM,
     LEAF_SLACK_MM,
+    abreast,
     as_lines,
     directions,
     loose_pieces,
@@ -29,11 +30,7 @@ from satAOI_adapters.dxf_read.doors import (
 )
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.groups import linked
-from satAOI_adapters.dxf_read.linework import PARALLEL
-from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray
-
-ABREAST_MM: Final = 20.0
-"""Lines of a window end this close to abreast of each other."""
+from satAOI_geo.plan import BoolArray, Finding, IntArray
 
 APART_MM: Final = 5.0
 """Lines closer to each other are drawn twice."""
@@ -62,7 +59,7 @@ def windows(
     lines = as_lines(pieces)
     if len(lines) < LINES:
         return []
-    group = linked(_abreast(lines), len(lines))
+    group = linked(abreast(lines), len(lines))
     is_window = _are_many(lines, group) & ~np.isin(group, group[_at_swings(lines, doors)])
     return [feature for feature, does in zip(pieces, is_window, strict=True) if does]
 
@@ -79,25 +76,6 @@ def window_findings(found: Iterable[Feature]) -> list[Finding]:
         )
         for layer in sorted({feature.placed.layer for feature in found})
     ]
-
-
-def _abreast(lines: Sequence[LineString]) -> IntArray:
-    """Numbers of lines that run side by side and end side by side, shape (pairs, 2)."""
-    along = directions(lines)
-    one, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=FACES_MM)
-    sines = np.abs(along[one, 0] * along[other, 1] - along[one, 1] * along[other, 0])
-    low, high = _reach(lines, along, one, one), _reach(lines, along, other, one)
-    is_even = (np.abs(low - high) <= ABREAST_MM).all(axis=1)
-    return np.asarray(np.column_stack((one, other))[(sines <= PARALLEL) & is_even])
-
-
-def _reach(
-    lines: Sequence[LineString], along: FloatArray, which: IntArray, of: IntArray
-) -> FloatArray:
-    """From where to where lines reach in the direction of others, shape (n, 2)."""
-    ends = np.array([(line.coords[0], line.coords[-1]) for line in lines])
-    shares = (ends[which] * along[of][:, np.newaxis]).sum(axis=-1)
-    return np.sort(shares, axis=1)
 
 
 def _are_many(lines: Sequence[LineString], group: IntArray) -> BoolArray:
