@@ -457,6 +457,40 @@ def test_pipes_among_foundations_are_no_walls_by_their_look(tmp_path: Path) -> N
     assert {obstacle.kind for obstacle in plan.obstacles} == {Kind.EQUIPMENT}
 
 
+@pytest.mark.parametrize("bow", [0, 1])
+def test_outline_drawn_line_by_line_on_a_nameless_layer_is_an_obstacle(
+    bow: int, tmp_path: Path
+) -> None:
+    document = drawing()
+    space = document.modelspace()
+    on = {"layer": "XYZ"}
+    for start, end in (((0, 0), (0, 600)), ((400, 600), (0, 600)), ((400, 0.5), (400, 600))):
+        space.add_line((start[0] + 4000, start[1]), (end[0] + 4000, end[1]), dxfattribs=on)
+    if bow:
+        space.add_arc((4200, 0), 200, 180, 360, dxfattribs=on)
+    else:
+        space.add_line((4000, 0), (4400, 0), dxfattribs=on)
+    rectangle(space, 7000, 7000, 7300, 7300, layer="COLUMN")
+    (thing,) = standing(plan_of(document, tmp_path), "XYZ")
+    assert thing.kind is Kind.UNCLASSIFIED
+    area_mm2 = 400 * 600 + bow * math.pi * 200**2 / 2
+    # a gap of half a millimetre is closed straight
+    assert area_mm2 - 200 <= thing.region().area <= area_mm2 + bow * 0.02 * math.pi * 200
+
+
+def test_grid_and_comb_of_lines_on_a_nameless_layer_are_no_outlines(tmp_path: Path) -> None:
+    document = drawing()
+    space = document.modelspace()
+    on = {"layer": "XYZ"}
+    for k in range(1, 5):
+        space.add_line((1000 * k, 500), (1000 * k, 4500), dxfattribs=on)
+        space.add_line((500, 1000 * k), (4500, 1000 * k), dxfattribs=on)
+    lines(space, [(6000, 1000), (7000, 1000), (7000, 3000), (6000, 3000)], layer="XYZ")
+    space.add_line((6000, 1000), (5800, 800), dxfattribs=on)
+    rectangle(space, 7000, 7000, 7300, 7300, layer="COLUMN")
+    assert not standing(plan_of(document, tmp_path), "XYZ")
+
+
 def test_open_lines_on_a_nameless_layer_are_left_out_and_said(tmp_path: Path) -> None:
     document = drawing()
     space = document.modelspace()

@@ -9,6 +9,7 @@ from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.features import Feature
+from satAOI_adapters.dxf_read.loops import Loop, loops
 from satAOI_adapters.dxf_read.obstacles import Standing, area_of
 from satAOI_adapters.dxf_read.shapes import is_thin, shapes_of
 from satAOI_geo.plan import Finding, Kind, Obstacle, Region, polygons_in
@@ -33,9 +34,16 @@ def unclassified(features: Sequence[Feature], floor: Region, known: Sequence[Obs
     half their length.
     """
     shapely.prepare(floor)
-    things = [thing for feature in features for thing in _closed(feature) if _is_on(thing, floor)]
+    outlines = loops(features)
+    drawn = [*(t for feature in features for t in _closed(feature)), *map(_thing, outlines)]
+    things = [thing for thing in drawn if _is_on(thing, floor)]
     rooms = _rooms(things, known)
-    left_out = [feature for feature in features if _is_open(feature) and _reaches(feature, floor)]
+    in_outlines = {id(feature) for outline in outlines for feature in outline.features}
+    left_out = [
+        feature
+        for feature in features
+        if id(feature) not in in_outlines and _is_open(feature) and _reaches(feature, floor)
+    ]
     standing = [thing for i, thing in enumerate(things) if i not in rooms]
     findings = [
         *_found(
@@ -55,6 +63,11 @@ def unclassified(features: Sequence[Feature], floor: Region, known: Sequence[Obs
         *_left_out(left_out),
     ]
     return Standing(tuple(standing), tuple(findings))
+
+
+def _thing(outline: Loop) -> Obstacle:
+    placed = outline.features[0].placed
+    return Obstacle(outline.shape, Kind.UNCLASSIFIED, placed.layer, placed.handle)
 
 
 def _counted(n_lines: int, n_patterns: int) -> str:
