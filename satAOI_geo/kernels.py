@@ -51,6 +51,10 @@ HELPERS: Final[list[Function]] = []
 KERNELS: Final[list["Kernel[..., Any]"]] = []
 """All kernels of these."""
 
+N_KEPT: Final = 5
+"""Of so many states of a kernel's source machine code is kept: several copies of the program may
+be in use."""
+
 _DIGEST_BYTES: Final = 32
 
 _one_at_a_time = Lock()
@@ -195,7 +199,7 @@ def _read(path: str) -> bytes | None:
 
 
 def _keep(path: str, content: bytes) -> None:
-    """Keep a file, if it can be written, in place of one from another state of the source.
+    """Keep a file, if it can be written, and the newest of the same from other sources.
 
     Processes may do so at the same time; each writes a file of its own and renames it.
     """
@@ -206,7 +210,7 @@ def _keep(path: str, content: bytes) -> None:
         with open(unfinished, "wb") as file:
             file.write(hashlib.sha256(content).digest() + content)
         os.replace(unfinished, path)
-        of_this_machine = name.rsplit("-", 1)[0]
-        for other in os.listdir(folder):
-            if other.startswith(f"{of_this_machine}-") and other != name:
-                os.remove(os.path.join(folder, other))
+        of_this_machine = f"{name.rsplit('-', 1)[0]}-"
+        same = [entry for entry in os.scandir(folder) if entry.name.startswith(of_this_machine)]
+        for outdated in sorted(same, key=lambda entry: -entry.stat().st_mtime)[N_KEPT:]:
+            os.remove(outdated.path)

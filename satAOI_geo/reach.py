@@ -25,7 +25,7 @@ from satAOI_geo.lattice import Lattice
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.robot import Robot
 from satAOI_geo.runs import Int32Array, Meeting, Runs, SliceRuns, roots, rows_of, unite
-from satAOI_geo.stretches import Stretches, merged
+from satAOI_geo.stretches import Stretches, of_runs
 
 EVERYTHING: Final = slice(None)
 
@@ -141,7 +141,8 @@ class Band:
         run_threads(move, lattice.n_directions, share[2])
         labels, n_sets = _numbered(joined.parents)
         row = runs.rows() + np.int32(lattice.first_row)
-        stretches = merged(labels, row, runs.begin, runs.end)
+        label, iy, begin, end = of_runs(runs, labels, n_sets)
+        stretches = (label, iy + np.int32(lattice.first_row), begin, end)
         lowest = _lowest_states(lattice, runs, row, labels, n_sets)
         return cls(lattice, runs, labels, lowest, stretches)
 
@@ -258,8 +259,7 @@ def _in_file(values: Int32Array) -> Int32Array:
         return values
     with TemporaryFile() as file:
         values.tofile(file)
-        # as if it could be written to: a kernel is compiled anew for arrays that cannot
-        return np.asarray(np.memmap(file, dtype=values.dtype, mode="c"))
+        return np.asarray(np.memmap(file, dtype=values.dtype, mode="r"))
 
 
 def _ranges(shape: tuple[int, int], rows: slice, columns: slice) -> tuple[range, range]:

@@ -177,11 +177,11 @@ def _fill_runs(
             ends = free[iy, word] & ~stepped
             carry = stepped >> np.uint64(63)
             while begins:
-                begin[n_begun] = word * 64 + _lowest_bit(begins)
+                begin[n_begun] = word * 64 + lowest_bit(begins)
                 begins &= begins - np.uint64(1)
                 n_begun += 1
             while ends:
-                end[n_ended] = word * 64 + _lowest_bit(ends)
+                end[n_ended] = word * 64 + lowest_bit(ends)
                 ends &= ends - np.uint64(1)
                 n_ended += 1
 
@@ -307,11 +307,11 @@ def _next_bit(row: Words, begin: int) -> int:
         if word == row.size:
             return -1
         bits = row[word]
-    return word * 64 + _lowest_bit(bits)
+    return word * 64 + lowest_bit(bits)
 
 
 @helper
-def _lowest_bit(bits: np.uint64) -> int:
+def lowest_bit(bits: np.uint64) -> int:
     """Number of the lowest set bit: how many lie below it."""
     return _n_bits((bits & (~bits + np.uint64(1))) - np.uint64(1))
 

@@ -9,10 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from satAOI_geo.lattice import WORD_BITS
+from satAOI_geo.intervals import set_bits
+from satAOI_geo.kernels import helper, kernel
+from satAOI_geo.lattice import WORD_BITS, Words
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import IntArray
-from satAOI_geo.runs import Int32Array, paint
+from satAOI_geo.runs import Int32Array, Runs, lowest_bit, paint
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,3 +88,95 @@ def merged(
         first_ix.astype(np.int32),
         last_ix.astype(np.int32),
     )
+
+
+def of_runs(
+    runs: Runs, labels: Int32Array, n_sets: int
+) -> tuple[Int32Array, Int32Array, Int32Array, Int32Array]:
+    """The nodes of sets of runs, numbered by `labels`: what `merged` says of these runs.
+
+    There are a hundred runs for each stretch. To sort them takes longer than to paint them, which
+    merges them, too; runs come row by row for each pose.
+    """
+    first = runs.first.reshape(-1, runs.first.shape[-1])
+    n_at_once = min(n_sets, int(np.diff(first, axis=1).sum(axis=0).max(initial=0)))
+    n_words = int(runs.end.max(initial=0)) // WORD_BITS + 1
+    nodes = np.zeros((n_at_once, n_words), dtype=np.uint64)
+    place, met = np.full(n_sets, -1, dtype=np.int32), np.empty(n_at_once, dtype=np.int32)
+    # of what there is room for only what is written to takes memory
+    room = np.empty((runs.begin.size, 4), dtype=np.int32)
+    n = _paint_sets(first, labels, runs.begin, runs.end, nodes, place, met, room)
+    label, row, begin, end = room[np.argsort(room[:n, 0], kind="stable")].T.copy()
+    return label, row, begin, end
+
+
+@kernel(
+    "int64(const int64[:, :], const int32[:], const int32[:], const int32[:], uint64[:, :], "
+    "int32[:], int32[:], int32[:, :])"
+)
+def _paint_sets(
+    first: IntArray,
+    labels: Int32Array,
+    begin: Int32Array,
+    end: Int32Array,
+    nodes: Words,
+    place: Int32Array,
+    met: Int32Array,
+    stretches: Int32Array,
+) -> int:
+    """Write the stretches of sets of runs, by row, set and column; sets as they are met in a row.
+
+    Args:
+        first: Shape (n_poses, n_rows + 1), see `Runs`.
+        labels: The set of each run.
+        begin: Its first column.
+        end: Its last column.
+        nodes: No nodes; a row of the lattice for each of the sets in one row.
+        place: -1 for each set: which of these it has.
+        met: Room for the sets in one row.
+        stretches: Room for label, row, first and last column of each stretch.
+
+    Returns:
+        How many stretches there are.
+    """
+    n = 0
+    for row in range(first.shape[1] - 1):
+        n_met = 0
+        for pose in range(first.shape[0]):
+            for run in range(first[pose, row], first[pose, row + 1]):
+                label = labels[run]
+                if place[label] < 0:
+                    place[label] = n_met
+                    met[n_met] = label
+                    n_met += 1
+                set_bits(nodes[place[label]], begin[run], end[run])
+        for k in range(n_met):
+            place[met[k]] = -1
+            n = _take_off(nodes[k], met[k], row, stretches, n)
+    return n
+
+
+@helper
+def _take_off(nodes: Words, label: int, row: int, stretches: Int32Array, n: int) -> int:
+    """Append the stretches of some nodes in a row to n stretches, and clear them; how many then."""
+    n_begun = n_ended = n
+    carry = np.uint64(0)
+    for word in range(nodes.size):
+        bits = nodes[word]
+        nodes[word] = np.uint64(0)
+        before = bits << np.uint64(1) | carry
+        carry = bits >> np.uint64(63)
+        begins, stops = bits & ~before, before & ~bits
+        while begins:
+            stretches[n_begun, 0] = label
+            stretches[n_begun, 1] = row
+            stretches[n_begun, 2] = word * 64 + lowest_bit(begins)
+            begins &= begins - np.uint64(1)
+            n_begun += 1
+        while stops:
+            stretches[n_ended, 3] = word * 64 + lowest_bit(stops) - 1
+            stops &= stops - np.uint64(1)
+            n_ended += 1
+    if carry:
+        stretches[n_ended, 3] = nodes.size * 64 - 1
+    return n_begun

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from satAOI_adapters.kernel_cache import compile_last
+from satAOI_adapters.kernel_cache import compile_all
 from satAOI_geo import kernels
-from satAOI_geo.kernels import KERNELS, VARIABLE, Kernel, filled, helper, kernel
+from satAOI_geo.kernels import KERNELS, N_KEPT, VARIABLE, Kernel, filled, helper, kernel
 from satAOI_geo.plan import FloatArray, IntArray
 from tests.command_line import ROOT, drawn_room
 
@@ -85,18 +85,18 @@ def test_machine_code_that_came_to_harm_is_made_anew(folder: Path, harm: bytes |
     assert len(kept.read_bytes()) == len(whole)
 
 
-def test_machine_code_of_changed_source_makes_room_for_new(
+def test_machine_code_of_changed_sources_makes_room_for_new(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    before = of(total, WEIGHTED)
-    before.ready()
     of(number_up, "int64(int64, int64[:, :])").ready()
-    monkeypatch.setattr(sys.modules[__name__], "WEIGHT", 4)
-    after = of(total, WEIGHTED)
-    after.ready()
-    assert not before.is_kept()
-    assert after.is_kept()
-    assert len(list(folder.iterdir())) == 2
+    made = []
+    for weight in range(N_KEPT + 2):
+        monkeypatch.setattr(sys.modules[__name__], "WEIGHT", weight)
+        made.append(of(total, WEIGHTED))
+        made[-1].ready()
+        os.utime(made[-1]._path(), (weight, weight))
+    assert [each.is_kept() for each in made] == [False] * 2 + [True] * N_KEPT
+    assert len(list(folder.iterdir())) == N_KEPT + 1
 
 
 @pytest.mark.usefixtures("folder")
@@ -198,13 +198,13 @@ def test_rows_for_which_there_was_no_room_are_there_the_second_time(n_rows: int)
 
 
 def test_machine_code_of_all_kernels_of_the_program_is_kept() -> None:
-    compile_last()
+    compile_all()
     assert len(KERNELS) > 10
     assert {each.__name__ for each in KERNELS if not each.is_kept()} == set()
 
 
 def test_once_compiled_the_program_runs_without_numba(tmp_path: Path) -> None:
-    compile_last()
+    compile_all()
     plan = drawn_room(tmp_path / "room.dxf")
     code = (
         "import sys; from satAOI_geo.cli import main; "

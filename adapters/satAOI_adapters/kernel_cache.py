@@ -32,11 +32,11 @@ def are_compiled() -> bool:
 
 
 def compile_beside() -> None:
-    """Compile the kernels that come last in a process beside this one, which compiles the first.
+    """Compile the kernels from the last one on in another process; this one does from the first.
 
-    Numba compiles one kernel at a time in a process; what another one has compiled it loads.
+    Numba compiles one kernel at a time in a process; what the other has compiled is loaded.
     """
-    command = [sys.executable, "-c", f"from {__name__} import compile_last; compile_last()"]
+    command = [sys.executable, "-c", f"from {__name__} import compile_all; compile_all()"]
     silent = subprocess.DEVNULL
     own = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     with contextlib.suppress(OSError):
@@ -46,8 +46,8 @@ def compile_beside() -> None:
         )
 
 
-def compile_last() -> None:
-    """Compile all kernels that are not compiled, from the last one that a run calls on."""
+def compile_all() -> None:
+    """Make all kernels ready, the last one that a run calls first, and keep what is compiled."""
     for kernel in reversed(_kernels()):
         kernel.ready()
 

@@ -1,0 +1,54 @@
+"""The nodes of sets of runs, as stretches of rows."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from satAOI_geo.nodes import Nodes
+from satAOI_geo.runs import Runs, SliceRuns, rows_of
+from satAOI_geo.stretches import merged, of_runs
+
+N_ROWS = 3
+
+
+def drawn_runs(rng: np.random.Generator, n_columns: int, n_poses: int) -> Runs:
+    """Runs of random nodes."""
+    slices = [rows_of(Nodes.of(rng.random((N_ROWS, n_columns)) < 0.6)) for _ in range(n_poses)]
+    return Runs.joined([slices])
+
+
+@given(
+    st.integers(0, 2**32 - 1),
+    st.sampled_from([1, 5, 63, 64, 65, 128, 200]),
+    st.integers(1, 5),
+    st.integers(1, 4),
+)
+def test_the_stretches_of_runs_are_those_of_sorting_and_merging_them(
+    seed: int, n_columns: int, n_poses: int, n_sets: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    runs = drawn_runs(rng, n_columns, n_poses)
+    labels = rng.integers(0, n_sets, runs.begin.size).astype(np.int32)
+    expected = merged(labels, runs.rows(), runs.begin, runs.end)
+    for found, column in zip(of_runs(runs, labels, n_sets), expected, strict=True):
+        assert found.dtype == column.dtype
+        assert np.array_equal(found, column)
+
+
+def test_runs_that_meet_or_overlap_are_one_stretch_in_their_set_only() -> None:
+    def pose(begin: int, end: int) -> SliceRuns:
+        first, column = np.array([0, 1]), np.array([begin], dtype=np.int32)
+        return SliceRuns(first, column, np.array([end], dtype=np.int32))
+
+    runs = Runs.joined([[pose(10, 20), pose(21, 63), pose(65, 70), pose(15, 30)]])
+    labels = np.array([1, 1, 1, 0], dtype=np.int32)
+    stretches = np.column_stack(of_runs(runs, labels, 2))
+    assert stretches.tolist() == [[0, 0, 15, 30], [1, 0, 10, 63], [1, 0, 65, 70]]
+
+
+@pytest.mark.parametrize("n_poses", [1, 3])
+def test_no_runs_have_no_stretches(n_poses: int) -> None:
+    none = rows_of(Nodes.of(np.zeros((N_ROWS, 70), dtype=np.bool_)))
+    found = of_runs(Runs.joined([[none] * n_poses]), np.empty(0, dtype=np.int32), 0)
+    assert [column.size for column in found] == [0, 0, 0, 0]
