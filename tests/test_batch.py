@@ -205,6 +205,7 @@ def test_a_run_ends_with_the_process_that_started_it(tmp_path: Path) -> None:
 import time
 from satAOI_adapters.batch import end_with_the_caller
 end_with_the_caller()
+open("begun", "w").close()
 time.sleep(60)
 """
     start = f"""
@@ -215,8 +216,9 @@ batch.PROGRAM = {run!r}
 batch.run_plan(batch.Task("a", "b", "c", (), {str(tmp_path)!r}, "", ""))
 """
     caller = subprocess.Popen([sys.executable, "-c", start])
-    while not (runs := psutil.Process(caller.pid).children()):
+    while not (tmp_path / "begun").exists():
         time.sleep(0.05)
+    runs = psutil.Process(caller.pid).children()
     caller.kill()
     caller.wait()
     assert psutil.wait_procs(runs, timeout=20) == (runs, [])

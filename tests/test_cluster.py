@@ -217,7 +217,7 @@ def test_workers_that_do_not_start_are_an_error(monkeypatch: pytest.MonkeyPatch)
 def test_a_scheduler_without_workers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("satAOI_adapters.cluster.CONNECT_S", 1)
     with (
-        distributed.LocalCluster(n_workers=0, dashboard_address=":0") as cluster,
+        distributed.LocalCluster(n_workers=0, dashboard_address="127.0.0.1:0") as cluster,
         pytest.raises(InputError, match="has no workers"),
         workers(scheduler=cluster.scheduler_address),
     ):

@@ -4,7 +4,6 @@ Each plan is run by the program itself in a process of its own: it gets the file
 `satAOI-geo run` writes, and nothing that becomes of it stops the rest.
 """
 
-import _thread
 import contextlib
 import glob
 import hashlib
@@ -285,8 +284,11 @@ def end_with_the_caller() -> None:
 
     def wait() -> None:
         os.read(sys.stdin.fileno(), 1)
-        _thread.interrupt_main()
+        os.kill(os.getpid(), signal.SIGINT)
 
+    if sys.platform != "win32":
+        # workers are deaf to interrupts, and so is what they start
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     threading.Thread(target=wait, daemon=True).start()
 
 

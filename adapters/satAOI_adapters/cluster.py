@@ -36,8 +36,8 @@ CONNECT_S: Final = 10
 LOST_S: Final = 30
 """Where nothing gets done for so long it is asked whether there are still workers."""
 
-END_S: Final = 0.1
-"""Longest wait for workers whose answers nobody wants any more."""
+END_S: Final = 1.0
+"""Longest wait for workers whose answers nobody wants any more; then they are killed."""
 
 CLIENT_CONFIG: Final[dict[str, object]] = {
     # A band is a task of many bytes. Dask warns of these and would have them scattered, but what
@@ -252,8 +252,9 @@ def _ended_at_once_by_errors(cluster: "LocalCluster") -> Iterator[None]:
     """Wait for no task when the block ends with an error or an interrupt."""
 
     async def end() -> None:
-        nannies = cluster.workers.values()
-        await asyncio.gather(*(nanny.close(timeout=END_S) for nanny in nannies))
+        ends = [nanny.close(timeout=END_S) for nanny in cluster.workers.values()]
+        # the error that ends the block is the one to tell
+        await asyncio.gather(*ends, return_exceptions=True)
 
     try:
         yield
