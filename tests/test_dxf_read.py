@@ -418,6 +418,54 @@ def test_hidden_layer_is_left_out_and_said(state: str, tmp_path: Path) -> None:
     assert len(plan_of(document, tmp_path, include_hidden=True).obstacles) == 1
 
 
+@pytest.mark.parametrize(
+    ("of_reference", "of_content", "state", "n_read"),
+    [
+        ("COLUMN", "0", "freeze", 0),
+        ("COLUMN", "0", "off", 0),
+        ("OTHER", "COLUMN", "freeze", 0),
+        ("OTHER", "COLUMN", "off", 0),
+        ("HIDDEN", "COLUMN", "freeze", 0),
+        ("HIDDEN", "COLUMN", "off", 1),
+        ("OTHER", "COLUMN", "lock", 1),
+    ],
+)
+def test_block_shows_what_the_layers_of_its_reference_and_of_its_content_let_it(
+    of_reference: str, of_content: str, state: str, n_read: int, tmp_path: Path
+) -> None:
+    document = drawing()
+    block = document.blocks.new("B")
+    corners = [(0, 0), (300, 0), (300, 300), (0, 300)]
+    block.add_lwpolyline(corners, close=True, dxfattribs={"layer": of_content})
+    document.modelspace().add_blockref("B", (1000, 1000), {"layer": of_reference})
+    hidden = "HIDDEN" if of_reference == "HIDDEN" else "COLUMN"
+    getattr(document.layers.add(hidden), state)()
+    plan = plan_of(document, tmp_path)
+    assert len(plan.obstacles) == n_read
+    assert ("layer-hidden" in codes(plan)) == (n_read == 0)
+    assert len(plan_of(document, tmp_path, include_hidden=True).obstacles) == 1
+
+
+def test_attributes_of_a_block_are_no_obstacles_and_its_lines_are(tmp_path: Path) -> None:
+    document = drawing()
+    block = document.blocks.new("COL-TAG")
+    block.add_lwpolyline([(0, 0), (300, 0), (300, 300), (0, 300)], close=True)
+    block.add_attdef("MARK", (500, 500), "?")
+    reference = document.modelspace().add_blockref("COL-TAG", (1000, 1000), {"layer": "COLUMN"})
+    reference.add_attrib("MARK", "C1", (1500, 1500), {"layer": "COLUMN", "height": 300})
+    (column,) = standing(plan_of(document, tmp_path), "COLUMN")
+    assert column.region().bounds == (1000, 1000, 1300, 1300)
+
+
+def test_small_circle_of_a_drawing_in_metres_is_kept_exactly(tmp_path: Path) -> None:
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = M
+    rectangle(document.modelspace(), 0, 0, 10, 10, layer="FLOOR")
+    document.modelspace().add_circle((5, 5), 0.05, dxfattribs={"layer": "EMBEDDED"})
+    (part,) = standing(plan_of(document, tmp_path), "EMBEDDED")
+    assert part.shape == Circle(5000.0, 5000.0, 50.0)
+
+
 def test_own_frozen_layer_is_not_said_to_be_hidden(tmp_path: Path) -> None:
     document = drawing()
     document.layers.add("SATAOI-ZONE").freeze()

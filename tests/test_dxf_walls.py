@@ -1,6 +1,7 @@
 """Walls, floors and things on unnamed layers: what a person sees is what the plan holds."""
 
 import math
+import random
 from pathlib import Path
 
 import ezdxf
@@ -9,7 +10,7 @@ import shapely
 from ezdxf import transform
 from ezdxf.document import Drawing
 from ezdxf.layouts import Modelspace
-from ezdxf.math import Matrix44
+from ezdxf.math import Matrix44, Vec3
 from shapely.geometry import LineString, Polygon, box
 
 from satAOI_geo.errors import EmptyPlanError
@@ -172,6 +173,31 @@ def test_corner_open_by_less_than_a_millimetre_is_closed_and_counted(tmp_path: P
     plan = plan_of(document, tmp_path)
     assert plan.obstacle_region().area == pytest.approx(300 * 300, rel=0.01)
     assert "gap-closed" in codes(plan)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_walls_drawn_twice_with_a_trembling_hand_are_the_same_walls(
+    seed: int, tmp_path: Path
+) -> None:
+    rng = random.Random(seed)
+
+    def near(spot: Vec3) -> Vec3:
+        # two ends are at most a millimetre apart
+        return spot + Vec3.from_deg_angle(rng.uniform(0, 360), rng.uniform(0, 0.5))
+
+    document = house(opening_mm=900.0)
+    space = document.modelspace()
+    for line in list(space.query("LINE")):
+        for _ in range(2):
+            space.add_line(near(line.dxf.start), near(line.dxf.end), dxfattribs={"layer": "WALL"})
+        space.delete_entity(line)
+    plan = plan_of(document, tmp_path)
+    assert {obstacle.kind for obstacle in plan.obstacles} == {Kind.WALL}
+    walls = OUTSIDE.difference(INSIDE).difference(box(2000, 0, 2900, 200))
+    blocked = shapely.affinity.translate(plan.obstacle_region(), *plan.frame.origin_mm)
+    assert blocked.symmetric_difference(walls).area <= walls.length * 1.0
+    floor = shapely.affinity.translate(plan.floor, *plan.frame.origin_mm)
+    assert floor.symmetric_difference(OUTSIDE).area <= OUTSIDE.length * 1.0
 
 
 def test_wider_gap_is_left_open_and_reported_with_both_ends(tmp_path: Path) -> None:

@@ -40,6 +40,9 @@ PARALLEL: Final = 0.02
 OVER_EACH_OTHER: Final = 1e-3
 """Greatest sine of the angle between lines that are drawn one over the other."""
 
+BACK: Final = 4.0
+"""So many gaps back along a line, what is still no farther than a gap beside it is its copy."""
+
 SQUARE: Final = 0.85
 """Greatest cosine of the angle between a wall and its end: 32° to 148°."""
 
@@ -96,7 +99,11 @@ def network(lines: Sequence[LineString] | GeometryArray, gap_mm: float = CLOSE_G
     for (owner, end, outwards), around in zip(ends, _around(ends, lines, missed_mm), strict=True):
         # lines with a corner here lie under the owner: nothing goes on from its end
         near = [lines[i] for i in around if end not in corners[i]]
-        foot = _nearest(near, end, _other_end(corners[owner], end, missed_mm))
+        foot = _nearest(
+            _leading_on(near, end, outwards, joined_mm) or near,
+            end,
+            _other_end(corners[owner], end, missed_mm),
+        )
         width_mm = math.inf if foot is None else math.dist(end, foot)
         if foot is not None and width_mm <= joined_mm:
             joints.append(_joint(end, foot, outwards))
@@ -204,6 +211,25 @@ def _other_end(own: Sequence[Point], end: Point, within_mm: float) -> list[Point
     other = own[-1] if own[0] == end else own[0]
     length_mm = sum(math.dist(*side) for side in pairwise(own))
     return [other] if math.dist(other, end) <= min(within_mm, length_mm / 2) else []
+
+
+def _leading_on(
+    near: Sequence[LineString], end: Point, outwards: Point, joined_mm: float
+) -> list[LineString]:
+    """The lines that an end may be joined to, less copies of its own line drawn beside it.
+
+    Joined to such a copy, the end would lead back to where it comes from.
+    """
+    if len(near) == 1:
+        return []
+    back_mm = BACK * joined_mm
+    back = Spot(end[0] - back_mm * outwards[0], end[1] - back_mm * outwards[1])
+    spot = Spot(end)
+    return [
+        line
+        for line in near
+        if line.distance(spot) <= joined_mm and line.distance(back) > joined_mm
+    ]
 
 
 def _nearest(near: Sequence[LineString], end: Point, feet: list[Point]) -> Point | None:
