@@ -7,10 +7,17 @@ import pytest
 import shapely
 from shapely.geometry import LinearRing, box
 
-from satAOI_adapters.arcs import RISE_MM, loop_with_arcs, outline_with_arcs
+from satAOI_adapters.arcs import RISE_MM, loops_with_arcs, outlines_with_arcs
 from satAOI_geo.aoi import Loop
 from satAOI_geo.plan import polygons_in
 from tests import results
+
+
+def loop_with_arcs(ring: LinearRing) -> Loop:
+    """What becomes of a ring, whatever rings come before and after it."""
+    alone, _, among, _ = loops_with_arcs([ring, ring_about(400, 350.0), ring, ring_about(8, 9.0)])
+    assert alone.vertices.tolist() == among.vertices.tolist()
+    return alone
 
 
 def ring_about(n_corners: int, radius_mm: float) -> LinearRing:
@@ -84,8 +91,9 @@ def test_spikes_and_repeated_corners_are_left_out(width_mm: float) -> None:
 
 def test_no_patch_is_drawn_farther_off_than_the_rise_of_its_arcs() -> None:
     regions = [patch.region for patch in results.furnished_result().patches if not patch.narrow]
-    for polygon in polygons_in(regions):
-        drawn = outline_with_arcs(polygon).polygon(RISE_MM / 4)
+    polygons = polygons_in(regions)
+    for polygon, outline in zip(polygons, outlines_with_arcs(polygons), strict=True):
+        drawn = outline.polygon(RISE_MM / 4)
         corners = shapely.points(shapely.get_coordinates(drawn))
         assert shapely.distance(corners, polygon.boundary).max() <= RISE_MM
         assert drawn.area == pytest.approx(polygon.area, abs=RISE_MM * polygon.length)
@@ -93,6 +101,10 @@ def test_no_patch_is_drawn_farther_off_than_the_rise_of_its_arcs() -> None:
 
 def test_patches_beside_discs_are_drawn_with_far_fewer_corners() -> None:
     regions = [patch.region for patch in results.furnished_result().patches if not patch.narrow]
-    outlines = [outline_with_arcs(polygon) for polygon in polygons_in(regions)]
+    outlines = outlines_with_arcs(polygons_in(regions))
     n_drawn = sum(len(loop.vertices) for o in outlines for loop in (o.exterior, *o.holes))
     assert n_drawn < sum(map(shapely.get_num_coordinates, regions)) / 4
+
+
+def test_no_polygons_have_no_outlines() -> None:
+    assert outlines_with_arcs([]) == []

@@ -1,13 +1,14 @@
 """What is drawn over the plan: the area, what it leaves, the start, and what was read."""
 
 import math
+from itertools import chain, islice
 from typing import Final
 
 from ezdxf.entities import DXFGraphic
 from ezdxf.layouts import Modelspace
 from ezdxf.lldxf.const import MTEXT_MIDDLE_CENTER
 
-from satAOI_adapters.arcs import outline_with_arcs
+from satAOI_adapters.arcs import outlines_with_arcs
 from satAOI_adapters.dxf_write.layers import (
     AOI,
     EDGE,
@@ -70,18 +71,24 @@ def draw_unreached(space: Modelspace, result: Result, letter: float) -> list[DXF
         result: The area of interest and the patches beside it.
         letter: Greatest height of a label, in drawing units.
     """
+    shown = [
+        patch
+        for patch in result.patches
+        if not patch.narrow and patch.area_mm2 >= result.lattice.step_mm**2
+    ]
+    polygons = [polygons_in([patch.region]) for patch in shown]
+    outlines = iter(outlines_with_arcs(list(chain.from_iterable(polygons))))
     hatches: list[DXFGraphic] = []
-    for patch in result.patches:
-        if patch.narrow or patch.area_mm2 < result.lattice.step_mm**2:
-            continue
+    for patch, own in zip(shown, polygons, strict=True):
         facts = {
             "area_m2": patch.area_mm2 / MM2_PER_M2,
             "reason": patch.reason.value,
             "blocker": patch.blocker.handle if patch.blocker else "",
         }
         style = UPPER if patch.reason is Reason.PATH else UNREACHED
-        outlines = map(outline_with_arcs, polygons_in([patch.region]))
-        hatches += [_filled(space, result, style, outline, facts) for outline in outlines]
+        hatches += [
+            _filled(space, result, style, outline, facts) for outline in islice(outlines, len(own))
+        ]
         if patch.area_mm2 >= LABELLED_MM2:
             _label(space, result, patch, letter)
     return hatches

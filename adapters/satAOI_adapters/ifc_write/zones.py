@@ -10,7 +10,7 @@ import ifcopenshell.guid
 import numpy as np
 from ifcopenshell import entity_instance
 
-from satAOI_adapters.arcs import outline_with_arcs
+from satAOI_adapters.arcs import outlines_with_arcs
 from satAOI_adapters.ifc_write import AOI_TYPE, UNREACHED_TYPE
 from satAOI_adapters.ifc_write.curves import closed_curve
 from satAOI_geo import __version__
@@ -102,7 +102,7 @@ class _Writer:
             yield self._patch(number, patch)
 
     def _patch(self, number: int, patch: Patch) -> entity_instance:
-        bodies = [self._body(outline_with_arcs(part)) for part in polygons_in([patch.region])]
+        bodies = [self._body(part) for part in outlines_with_arcs(polygons_in([patch.region]))]
         zone = self._zone(f"Not reached {number}: {patch.reason}", UNREACHED_TYPE, bodies)
         properties = {
             "Area": self._area_m2(patch.area_mm2 / MM2_PER_M2),
