@@ -271,3 +271,14 @@ def test_a_line_breaks_at_blanks_before_it_is_too_long() -> None:
 def test_letters_that_a_typeface_lacks_are_spelt_in_others() -> None:
     # the typeface that comes with the library has little more than the English letters
     assert spelt("2 m² Tür 墙", "") == "2 m2 Tur \\u5899"
+
+
+def test_letters_that_are_spelt_in_others_are_as_wide_as_these() -> None:
+    # the built-in typeface has no Chinese letters: each is a code of six
+    lines = list(wrapped("layer 墙体 layer 墙体", "", 13, 100))
+    assert [spelt(line, "") for line in lines] == [
+        "layer",
+        "\\u5899\\u4f53",
+        "layer",
+        "\\u5899\\u4f53",
+    ]

@@ -64,11 +64,14 @@ def _spelt(letter: str, face: str) -> str:
 
 
 def wrapped(text: str, face: str, size: float, width: float) -> Iterator[str]:
-    """The text in lines of at most this width, broken at blanks; a longer word has its own."""
+    """The text in lines of at most this width, broken at blanks; a longer word has its own.
+
+    Letters that the typeface lacks are as wide as what stands for them.
+    """
     line = ""
     for word in text.split():
         longer = f"{line} {word}" if line else word
-        if line and font(face, size).getlength(longer) > width:
+        if line and font(face, size).getlength(spelt(longer, face)) > width:
             yield line
             line = word
         else:
