@@ -20,6 +20,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cached_property, update_wrapper
 from importlib.util import cache_from_source
+from itertools import chain
 from threading import Lock
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, Final, Generic, ParamSpec, TypeVar
@@ -43,7 +44,7 @@ FunctionT = TypeVar("FunctionT", bound=Function)
 ScalarT = TypeVar("ScalarT", bound=np.generic)
 
 VARIABLE: Final = "NUMBA_CACHE_DIR"
-"""Numba would keep there what it compiles."""
+"""Numba's own: where it would keep what it compiles."""
 
 HELPERS: Final[list[Function]] = []
 """All functions for kernels to call, of the modules imported so far."""
@@ -52,13 +53,12 @@ KERNELS: Final[list["Kernel[..., Any]"]] = []
 """All kernels of these."""
 
 N_KEPT: Final = 5
-"""Of so many states of a kernel's source machine code is kept: several copies of the program may
-be in use."""
+"""For so many states of a kernel's source, since several copies of the program may be in use."""
 
 _DIGEST_BYTES: Final = 32
 
 _one_at_a_time = Lock()
-"""A kernel is made ready once, and LLVM has one list of what is in memory."""
+"""Threads that need a kernel at the same time make it ready once."""
 
 
 def helper(function: FunctionT) -> FunctionT:
@@ -117,10 +117,8 @@ class Kernel(Generic[P, R]):
         """
         run = self._run or self.ready()
         takes = self._signature.takes
-        checked = [one.checked(each) for one, each in zip(takes, arguments, strict=True)]
-        result: R = run(
-            *(c for one, each in zip(takes, checked, strict=True) for c in one.as_c(each))
-        )
+        checked = [taken.checked(given) for taken, given in zip(takes, arguments, strict=True)]
+        result: R = run(*chain.from_iterable(map(Parameter.as_c, takes, checked)))
         return result
 
     def ready(self) -> Function:

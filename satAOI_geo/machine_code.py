@@ -36,7 +36,6 @@ C_FUNCTIONS: Final = frozenset(
 )
 """Functions of C that code may call, or LLVM's operations of that name become."""
 
-
 _MEMORY: Final = ctypes.c_char * 0
 """Where an array lies, whatever there is."""
 
