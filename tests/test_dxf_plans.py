@@ -1,10 +1,12 @@
 """Several plans in one drawing, and what lies beside, under or behind them."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import ezdxf
 import pytest
 from ezdxf.document import Drawing
+from ezdxf.layouts import Modelspace
 
 from satAOI_geo.errors import DrawingError, InputError
 from tests.drawings import MM, codes, drawing, plan_of, rectangle, standing
@@ -163,3 +165,72 @@ def test_external_reference_that_the_layer_file_ignores_may_be_missing(tmp_path:
 def test_folder_of_references_must_exist(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="nowhere"):
         plan_of(with_xref(), tmp_path, xref_dir=tmp_path / "nowhere")
+
+
+def rectangle_of_lines(space: Modelspace, bounds: tuple[float, float, float, float]) -> None:
+    """A rectangle as four lines on layer 0."""
+    left, bottom, right, top = bounds
+    corners = [(left, bottom), (right, bottom), (right, top), (left, top)]
+    for start, end in pairwise([*corners, corners[0]]):
+        space.add_line(start, end, dxfattribs={"layer": "0"})
+
+
+def flat_on_layer_0(*, with_door: bool = True) -> Drawing:
+    """A room of 6 × 4 m inside walls 200 mm thick, with a shaft and a door in its lower wall."""
+    document = drawing(floor=False)
+    space = document.modelspace()
+    corners = [(2000, 0), (-200, 0), (-200, 4400), (6200, 4400), (6200, 0), (2900, 0), (2900, 200)]
+    corners += [(6000, 200), (6000, 4200), (0, 4200), (0, 200), (2000, 200)]
+    for start, end in pairwise([*corners, corners[0]]):
+        space.add_line(start, end, dxfattribs={"layer": "0"})
+    if with_door:
+        space.add_arc((2000, 200), 900, 0, 90, dxfattribs={"layer": "0"})
+        space.add_line((2000, 200), (2000, 1100), dxfattribs={"layer": "0"})
+    return document
+
+
+@pytest.mark.parametrize("margin_mm", [0.0, 500.0])
+def test_frame_and_title_block_among_the_walls_are_left_out_and_said(
+    margin_mm: float, tmp_path: Path
+) -> None:
+    bare = plan_of(flat_on_layer_0(), tmp_path)
+    document = flat_on_layer_0()
+    space = document.modelspace()
+    rectangle_of_lines(space, (-5000, -6000, 16_000, 9000))
+    if margin_mm:
+        left, bottom, right, top = -5000, -6000, 16_000, 9000
+        outer = (left - margin_mm, bottom - margin_mm, right + margin_mm, top + margin_mm)
+        rectangle_of_lines(space, outer)
+    space.add_line((9000, -6000), (9000, -4000), dxfattribs={"layer": "0"})
+    space.add_line((9000, -4000), (16_000, -4000), dxfattribs={"layer": "0"})
+    framed = plan_of(document, tmp_path)
+    assert "frame" in codes(framed)
+    assert framed.floor.equals(bare.floor)
+    assert [o.shape for o in framed.obstacles] == [o.shape for o in bare.obstacles]
+
+
+def test_plans_in_one_frame_are_told_apart(tmp_path: Path) -> None:
+    document = flat_on_layer_0()
+    space = document.modelspace()
+    for entity in list(space):
+        twin = entity.copy()
+        twin.translate(12_000, 0, 0)
+        space.add_entity(twin)
+    rectangle_of_lines(space, (-5000, -6000, 25_000, 9000))
+    assert {"frame", "several-plans"} <= set(codes(plan_of(document, tmp_path)))
+
+
+@pytest.mark.parametrize("what", ["no door", "a wall joined", "a wall near", "two faces"])
+def test_rectangle_that_may_be_a_wall_is_no_frame(what: str, tmp_path: Path) -> None:
+    document = flat_on_layer_0(with_door=what != "no door")
+    space = document.modelspace()
+    rectangle_of_lines(space, (-5000, -6000, 16_000, 9000))
+    if what == "a wall joined":
+        space.add_line((-5000, 2000), (-200, 2000), dxfattribs={"layer": "0"})
+    elif what == "a wall near":
+        space.add_line((10_000, 8500), (12_000, 8500), dxfattribs={"layer": "0"})
+    elif what == "two faces":
+        rectangle_of_lines(space, (-5240, -6240, 16_240, 9240))
+    plan = plan_of(document, tmp_path)
+    assert "frame" not in codes(plan)
+    assert plan.floor.area >= 21_000 * 15_000

@@ -45,7 +45,7 @@ def with_lookalikes(
     for entity, feature in near:
         if entity.verdict.meaning is None:
             unknown[entity.placed.layer].append(feature)
-    walls = [layer for layer, drawn in unknown.items() if _look_like_walls(drawn, mm_per_unit)]
+    walls = [layer for layer, drawn in unknown.items() if look_like_walls(drawn, mm_per_unit)]
     as_wall = Verdict(Meaning.WALL)
     told = {
         id(entity): replace(entity, verdict=as_wall)
@@ -58,7 +58,8 @@ def with_lookalikes(
     )
 
 
-def _look_like_walls(drawn: Sequence[Feature], mm_per_unit: float) -> bool:
+def look_like_walls(drawn: Sequence[Feature], mm_per_unit: float) -> bool:
+    """Whether most straight lines, given in drawing units, run side by side as wall faces do."""
     lengths, distances = beside(drawn)
     lengths_mm, thicknesses_mm = lengths * mm_per_unit, distances * mm_per_unit
     is_face = (thicknesses_mm >= WALLS.least_mm) & (thicknesses_mm <= WALLS.most_mm)

@@ -76,13 +76,13 @@ def clusters(drawn: Drawn) -> list[Cluster]:
     pairs = [(m, feature) for m, features in drawn.items() if m is not None for feature in features]
     if not pairs:
         return []
-    lines = _lines([feature for _, feature in pairs])
+    lines = rough_lines([feature for _, feature in pairs])
     owners = _grouped(lines)
     counts: list[Counter[Meaning]] = [Counter() for _ in range(owners.max() + 1)]
     swings: Counter[int] = Counter()
     for owner, (meaning, feature) in zip(owners.tolist(), pairs, strict=True):
         counts[owner][meaning] += 1
-        swings[owner] += _n_swings(feature)
+        swings[owner] += n_swings(feature)
     found = [
         Cluster(hull, count, swings[owner])
         for owner, (hull, count) in enumerate(zip(_hulls(lines, owners), counts, strict=True))
@@ -97,7 +97,7 @@ def within(drawn: Drawn, part: BaseGeometry) -> tuple[Drawn, int]:
     kept: Drawn = {}
     n_left_out = 0
     for meaning, features in drawn.items():
-        is_in = shapely.intersects(reach, _lines(features))
+        is_in = shapely.intersects(reach, rough_lines(features))
         kept[meaning] = [feature for feature, keeps in zip(features, is_in, strict=True) if keeps]
         n_left_out += len(features) - len(kept[meaning])
     return kept, n_left_out
@@ -152,7 +152,8 @@ def _holds(cluster: Cluster, spot_mm: Point) -> bool:
     return left <= spot_mm[0] <= right and bottom <= spot_mm[1] <= top
 
 
-def _n_swings(feature: Feature) -> int:
+def n_swings(feature: Feature) -> int:
+    """How many quarter turns, such as doors draw, a feature has."""
     return sum(
         isinstance(piece, Arc) and np.pi / 3 <= piece.sweep_rad <= 2 * np.pi / 3
         for path in feature.paths
@@ -160,7 +161,7 @@ def _n_swings(feature: Feature) -> int:
     )
 
 
-def _lines(features: Sequence[Feature]) -> GeometryArray:
+def rough_lines(features: Sequence[Feature]) -> GeometryArray:
     """Roughly what features draw: a geometry for each."""
     paths = [path.rough() for feature in features for path in feature.paths]
     if not paths:

@@ -16,6 +16,7 @@ from satAOI_adapters.dxf_read.entities import DRAWN, features_of
 from satAOI_adapters.dxf_read.estimate import estimate
 from satAOI_adapters.dxf_read.expand import Expansion, Placed, expand
 from satAOI_adapters.dxf_read.features import Feature
+from satAOI_adapters.dxf_read.frames import without_frames
 from satAOI_adapters.dxf_read.lookalikes import with_lookalikes
 from satAOI_adapters.dxf_read.meaning import LISTED, Seen, with_meaning
 from satAOI_adapters.dxf_read.opening import open_drawing
@@ -197,7 +198,9 @@ def survey(path: Path, options: ReadOptions) -> Survey:
     by_look: tuple[Finding, ...] = ()
     if isinstance(known, Known):
         look_again = with_tiles if fallback else with_lookalikes
+        near, of_frames = without_frames(near, known.unit.mm)
         near, by_look = look_again(near, known.unit.mm)
+        by_look = (*of_frames, *by_look)
     return Survey(
         path=path,
         sha256=opened.sha256,
