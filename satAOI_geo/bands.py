@@ -13,6 +13,7 @@ import numpy as np
 from satAOI_geo.engine import Engine
 from satAOI_geo.freespace import free_space
 from satAOI_geo.lattice import WORD_BITS, Lattice
+from satAOI_geo.memory import give_back
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.progress import Stopwatch
 from satAOI_geo.reach import Band
@@ -134,6 +135,8 @@ def _in_turn(tasks: Sequence[BandTask], watch: Stopwatch) -> Iterator[tuple[int,
         with watch.part(number / len(tasks), (number + 1) / len(tasks)):
             found = explored(task, watch)
         yield number, found
+        if len(tasks) > 1:
+            give_back()
 
 
 def _by_crew(

@@ -9,6 +9,7 @@ follow any path through open free space as closely as wanted; how many manoeuvre
 not bounded.
 """
 
+import mmap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -99,6 +100,7 @@ class Band:
         labels: Shape (n_runs,): number of each run's set.
         lowest: Shape (n_sets,), see `_lowest_states`.
         stretches: The nodes of each set: label, row of the whole lattice, first and last column.
+        pages: Of the files that the runs are in, if they are.
     """
 
     lattice: Lattice
@@ -106,6 +108,7 @@ class Band:
     labels: Int32Array
     lowest: npt.NDArray[np.int64]
     stretches: tuple[Int32Array, Int32Array, Int32Array, Int32Array]
+    pages: tuple[mmap.mmap, ...] = ()
 
     @classmethod
     def of(
@@ -147,9 +150,27 @@ class Band:
         return cls(lattice, runs, labels, lowest, stretches)
 
     def aside(self) -> "Band":
-        """The same band with its runs in a file that the system maps into memory as needed."""
-        runs = replace(self.runs, begin=_in_file(self.runs.begin), end=_in_file(self.runs.end))
-        return replace(self, runs=runs, labels=_in_file(self.labels))
+        """The same band with its runs in files that the system maps into memory as needed."""
+        begin, of_begin = _in_file(self.runs.begin)
+        end, of_end = _in_file(self.runs.end)
+        labels, of_labels = _in_file(self.labels)
+        pages = tuple(each for each in (of_begin, of_end, of_labels) if each is not None)
+        runs = replace(self.runs, begin=begin, end=end)
+        return replace(self, runs=runs, labels=labels, pages=pages)
+
+    def at(self, iy: int, ix: int) -> npt.NDArray[np.int32]:
+        """The set that holds each pose at a node, row iy of the whole lattice, or -1.
+
+        Shape (n_directions, n_swings).
+        """
+        runs = self.runs.holding(iy - self.lattice.first_row, ix)
+        sets = np.full(runs.shape, -1, dtype=np.int32)
+        sets[runs >= 0] = self.labels[runs[runs >= 0]]
+        for each in self.pages:
+            # what was looked at would count as memory of this process until the system is short
+            if hasattr(mmap, "MADV_DONTNEED"):
+                each.madvise(mmap.MADV_DONTNEED)
+        return sets
 
     def on_row(self, iy: int) -> npt.NDArray[np.int32]:
         """The sets of the runs on one of its rows, pose after pose."""
@@ -232,11 +253,9 @@ class PoseComponents:
         """The set that holds each pose at a node, or -1; shape (n_directions, n_swings)."""
         tops = [band.lattice.first_row + band.lattice.n_rows for band in self.bands]
         number = int(np.searchsorted(tops, iy, side="right"))
-        band = self.bands[number]
-        runs = band.runs.holding(iy - band.lattice.first_row, ix)
-        labels = np.full(runs.shape, -1, dtype=np.int32)
-        labels[runs >= 0] = self.numbers[number][band.labels[runs[runs >= 0]]]
-        return labels
+        sets = self.bands[number].at(iy, ix)
+        sets[sets >= 0] = self.numbers[number][sets[sets >= 0]]
+        return sets
 
 
 def _lowest_states(
@@ -253,13 +272,15 @@ def _lowest_states(
     return lowest
 
 
-def _in_file(values: Int32Array) -> Int32Array:
+def _in_file(values: Int32Array) -> tuple[Int32Array, mmap.mmap | None]:
     """The values in a file without a name, which is gone with the last array that shows it."""
     if not values.size:
-        return values
+        return values, None
     with TemporaryFile() as file:
         values.tofile(file)
-        return np.asarray(np.memmap(file, dtype=values.dtype, mode="r"))
+        file.flush()
+        pages = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+    return np.frombuffer(pages, dtype=values.dtype), pages
 
 
 def _ranges(shape: tuple[int, int], rows: slice, columns: slice) -> tuple[range, range]:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import reduce
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
 import shapely
@@ -22,6 +22,7 @@ from shapely.geometry import Point, Polygon
 
 from satAOI_geo.aoi import Aoi, outlines_of
 from satAOI_geo.freespace import run_threads
+from satAOI_geo.memory import give_back
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import FloorPlan, Obstacle, Region, as_region, polygons_in
 from satAOI_geo.search import Search
@@ -35,6 +36,9 @@ EVERY_ROW: Final = slice(None)
 
 NARROW_CELLS: Final = 2
 """Between the disc and a wall the lattice leaves strips of up to a cell, askew to it 1.4 cells."""
+
+
+RegionT = TypeVar("RegionT", Polygon, Region)
 
 
 class Reason(StrEnum):
@@ -112,6 +116,8 @@ def unreached(
                 narrow.append(blockers.patch(strips, Reason.DISC, narrow=True))
         if progress is not None:
             progress(number / len(row_cuts))
+        if len(row_cuts) > 1:
+            give_back()
     patches = [blockers.patch(region, reason) for reason, region in _joined(pieces)]
     return (*sorted(patches, key=_largest_first), *sorted(narrow, key=_largest_first))
 
@@ -177,12 +183,12 @@ class _TileRow:
         wider = self._fitted(tile) | {Reason.PATH: upper}
         pieces = list(_by_reason(polygons_in([broad]), wider, step_mm))
         large = [
-            _Piece(reason, piece, tile.ends(piece))
+            _Piece(reason, _compact(piece), tile.ends(piece))
             for reason, piece in pieces
             if piece.area >= step_mm**2
         ]
         crumbs = [piece for _, piece in pieces if piece.area < step_mm**2]
-        return large, as_region(shapely.union_all([strips, *crumbs])) if crumbs else strips
+        return large, _compact(shapely.union_all([strips, *crumbs]) if crumbs else strips)
 
     def _fitted(self, tile: Tile) -> dict[Reason, Region]:
         """What the disc covers near a tile from the nodes that fit."""
@@ -208,6 +214,12 @@ def _fitting_nodes(found: Search, rows: slice) -> dict[Reason, Nodes]:
         Reason.VEHICLE: Nodes(reduce(np.bitwise_or, capsules), lattice.n_columns),
         Reason.ZONE: Nodes(found.free.words[rows], lattice.n_columns),
     }
+
+
+def _compact(region: RegionT) -> RegionT:
+    """The same region in less than half the memory: what overlays make keeps room for more."""
+    copy: RegionT = shapely.from_wkb(shapely.to_wkb(region))
+    return copy
 
 
 def _opened(region: Region, width_mm: float) -> tuple[Region, Region]:
@@ -274,7 +286,7 @@ def _joined(pieces: list[_Piece]) -> Iterator[tuple[Reason, Polygon]]:
         own = [piece for piece in pieces if piece.reason is reason]
         yield from ((reason, piece.region) for piece in own if not piece.at_seam)
         at_seams = shapely.union_all([piece.region for piece in own if piece.at_seam])
-        yield from ((reason, region) for region in polygons_in([at_seams]))
+        yield from ((reason, _compact(region)) for region in polygons_in([at_seams]))
 
 
 def _largest_first(patch: Patch) -> tuple[float, tuple[float, float]]:

@@ -13,6 +13,7 @@ from satAOI_geo.aoi import Aoi, Outline, areas
 from satAOI_geo.discs import covered_cells
 from satAOI_geo.kernels import kernel
 from satAOI_geo.lattice import WORD_BITS, Lattice
+from satAOI_geo.memory import give_back
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import BoolArray
 from satAOI_geo.reach import PoseComponents, State
@@ -181,6 +182,8 @@ def _covered(
         n_done += len(batch)
         if progress is not None:
             progress(n_done / labels.size)
+        if n_done < labels.size:
+            give_back()
 
 
 def _batches(boxes: npt.NDArray[np.int64], labels: list[int]) -> Iterator[list[int]]:
