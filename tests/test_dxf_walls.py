@@ -390,6 +390,19 @@ def test_walls_and_columns_that_are_nothing_but_fills_are_read_from_pattern_laye
     assert ("fills-only" in codes(plan)) == (kind is not None)
 
 
+def test_floor_between_walls_that_are_nothing_but_fills_is_guessed_as_between_others(
+    tmp_path: Path,
+) -> None:
+    document = drawing(floor=False)
+    for bottom in (0, 4000):
+        hatch = document.modelspace().add_hatch(dxfattribs={"layer": "A-WALL-PATT"})
+        corners = [(0, bottom), (5000, bottom), (5000, bottom + 240), (0, bottom + 240)]
+        hatch.paths.add_polyline_path(corners)
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == 5000 * 4240
+    assert "floor-guessed" in codes(plan)
+
+
 def test_fills_on_pattern_layers_count_for_nothing_beside_walls(tmp_path: Path) -> None:
     document = drawing()
     rectangle(document.modelspace(), 1000, 3000, 5000, 3240, layer="A-WALL")

@@ -31,9 +31,22 @@ class Seen:
     verdict: Verdict
 
 
-def with_meaning(
-    drawn: Sequence[Placed], table: LayerTable
-) -> tuple[tuple[Seen, ...], tuple[Finding, ...]]:
+@dataclass(frozen=True, slots=True)
+class Meanings:
+    """What the entities of a drawing stand for.
+
+    Attributes:
+        seen: The entities.
+        is_named: Whether layers tell what stops the robot, rather than everything being walls.
+        findings: What was guessed.
+    """
+
+    seen: tuple[Seen, ...]
+    is_named: bool
+    findings: tuple[Finding, ...]
+
+
+def with_meaning(drawn: Sequence[Placed], table: LayerTable) -> Meanings:
     """Each entity with its meaning; a drawing without any layer of obstacles is all walls."""
     # a drawing has few layers and blocks, and many entities on each
     known: dict[tuple[str, tuple[str, ...]], Verdict] = {}
@@ -49,17 +62,16 @@ def with_meaning(
             filled.extend(findings)
     is_unnamed = [entity.verdict.meaning is None or _is_face(entity) for entity in seen]
     if any(entity.verdict.meaning in TELLING for entity in seen) or not any(is_unnamed):
-        return tuple(seen), tuple(filled)
+        return Meanings(tuple(seen), is_named=True, findings=tuple(filled))
     as_wall = Verdict(Meaning.WALL)
-    return (
+    walls = [entity for entity, unnamed in zip(seen, is_unnamed, strict=True) if unnamed]
+    return Meanings(
         tuple(
             replace(entity, verdict=as_wall) if unnamed else entity
             for entity, unnamed in zip(seen, is_unnamed, strict=True)
         ),
-        (
-            *filled,
-            _all_walls([e for e, unnamed in zip(seen, is_unnamed, strict=True) if unnamed]),
-        ),
+        is_named=False,
+        findings=(*filled, _all_walls(walls)),
     )
 
 

@@ -179,28 +179,11 @@ def survey(path: Path, options: ReadOptions) -> Survey:
     )
     foreign = foreign_in(expansion.placed)
     drawn = [placed for placed in expansion.placed if placed.kind in DRAWN]
-    seen, fallback = with_meaning(drawn, table)
-    rough, broken = _in_drawing_units(seen)
+    meanings = with_meaning(drawn, table)
+    rough, broken = _in_drawing_units(meanings.seen)
     near, box, middle, strays = _without_strays(rough)
-    size = (0.0, 0.0) if box is None else (box[2] - box[0], box[3] - box[1])
-    header = opened.document.header
-    guess = estimate(
-        [(entity.verdict.meaning, feature) for entity, feature in near],
-        size,
-        [placed.entity for placed in expansion.placed if placed.kind not in DRAWN],
-        in_feet_and_inches=header.get("$LUNITS", 2) in FEET_AND_INCHES,
-    )
-    known: Known | UnitError
-    try:
-        known = unit_of(header.get("$INSUNITS", NO_UNIT), options.units, guess, size, path.name)
-    except UnitError as error:
-        known = error
-    by_look: tuple[Finding, ...] = ()
-    if isinstance(known, Known):
-        look_again = with_tiles if fallback else with_lookalikes
-        near, of_frames = without_frames(near, known.unit.mm)
-        near, by_look = look_again(near, known.unit.mm)
-        by_look = (*of_frames, *by_look)
+    known = _unit(opened.document, near, box, expansion, option=options.units, name=path.name)
+    near, by_look = _looked_at(near, known, is_named=meanings.is_named)
     return Survey(
         path=path,
         sha256=opened.sha256,
@@ -211,8 +194,8 @@ def survey(path: Path, options: ReadOptions) -> Survey:
         known=known,
         box=box,
         middle=middle,
-        door_blocks=_door_blocks(seen, table),
-        is_named=not fallback,
+        door_blocks=_door_blocks(meanings.seen, table),
+        is_named=meanings.is_named,
         noticed=(
             *opened.findings,
             *expansion.findings,
@@ -220,7 +203,7 @@ def survey(path: Path, options: ReadOptions) -> Survey:
             *xref_findings(expansion.missing, table),
             *foreign_findings(foreign),
             *strays,
-            *fallback,
+            *meanings.findings,
             *by_look,
         ),
         unread=(*foreign, *(entity for entity, _ in broken)),
@@ -232,6 +215,42 @@ def survey(path: Path, options: ReadOptions) -> Survey:
             or (None if near else _empty(path.name, expansion))
         ),
     )
+
+
+def _unit(
+    document: Drawing,
+    near: Sequence[tuple[Seen, Feature]],
+    box: Box | None,
+    expansion: Expansion,
+    *,
+    option: str | None,
+    name: str,
+) -> Known | UnitError:
+    """The unit of length, or why it is not known."""
+    left, bottom, right, top = box or (0.0, 0.0, 0.0, 0.0)
+    size = (right - left, top - bottom)
+    header = document.header
+    guess = estimate(
+        [(entity.verdict.meaning, feature) for entity, feature in near],
+        size,
+        [placed.entity for placed in expansion.placed if placed.kind not in DRAWN],
+        in_feet_and_inches=header.get("$LUNITS", 2) in FEET_AND_INCHES,
+    )
+    try:
+        return unit_of(header.get("$INSUNITS", NO_UNIT), option, guess, size, name)
+    except UnitError as error:
+        return error
+
+
+def _looked_at(
+    near: list[tuple[Seen, Feature]], known: Known | UnitError, *, is_named: bool
+) -> tuple[list[tuple[Seen, Feature]], tuple[Finding, ...]]:
+    """What is drawn, with the meanings that only its look tells, once the unit is known."""
+    if isinstance(known, UnitError):
+        return near, ()
+    near, of_frames = without_frames(near, known.unit.mm)
+    near, by_look = (with_lookalikes if is_named else with_tiles)(near, known.unit.mm)
+    return near, (*of_frames, *by_look)
 
 
 def _door_blocks(seen: Iterable[Seen], table: LayerTable) -> frozenset[str]:
