@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.loops import Loop, loops
 from satAOI_adapters.dxf_read.obstacles import Standing, area_of
+from satAOI_adapters.dxf_read.plans import rough_lines
 from satAOI_adapters.dxf_read.shapes import is_thin, shapes_of
 from satAOI_geo.plan import Finding, Kind, Obstacle, Region, polygons_in
 
@@ -39,11 +40,9 @@ def unclassified(features: Sequence[Feature], floor: Region, known: Sequence[Obs
     things = [thing for thing in drawn if _is_on(thing, floor)]
     rooms = _rooms(things, known)
     in_outlines = {id(feature) for outline in outlines for feature in outline.features}
-    left_out = [
-        feature
-        for feature in features
-        if id(feature) not in in_outlines and _is_open(feature) and _reaches(feature, floor)
-    ]
+    open_ones = [f for f in features if id(f) not in in_outlines and _is_open(f)]
+    reaches = shapely.intersects(floor, rough_lines(open_ones))
+    left_out = [feature for feature, does in zip(open_ones, reaches, strict=True) if does]
     standing = [thing for i, thing in enumerate(things) if i not in rooms]
     findings = [
         *_found(
@@ -80,10 +79,6 @@ def _is_open(feature: Feature) -> bool:
     return _is_pattern(feature) or (
         not feature.is_area and not feature.width_mm and not all(p.closed for p in feature.paths)
     )
-
-
-def _reaches(feature: Feature, floor: Region) -> bool:
-    return any(floor.intersects(LineString(path.rough())) for path in feature.paths)
 
 
 def _left_out(features: Sequence[Feature]) -> list[Finding]:
