@@ -99,7 +99,8 @@ class Band:
         runs: The states, as runs.
         labels: Shape (n_runs,): number of each run's set.
         lowest: Shape (n_sets,), see `_lowest_states`.
-        stretches: The nodes of each set: label, row of the whole lattice, first and last column.
+        stretches: The nodes of each set: label, row of the whole lattice, first and last column;
+            nothing once they are gathered from all bands.
         pages: Of the files that the runs are in, if they are.
     """
 
@@ -107,7 +108,7 @@ class Band:
     runs: Runs
     labels: Int32Array
     lowest: npt.NDArray[np.int64]
-    stretches: tuple[Int32Array, Int32Array, Int32Array, Int32Array]
+    stretches: tuple[Int32Array, ...]
     pages: tuple[mmap.mmap, ...] = ()
 
     @classmethod
@@ -221,7 +222,9 @@ class PoseComponents:
         ]
         labels, row, begin, end = (np.concatenate(part) for part in zip(*parts, strict=True))
         stretches = Stretches.of(labels, row, begin, end, n_sets)
-        return cls(lattice, tuple(bands), numbers, stretches, stretches.boxes())
+        # they are all in one now
+        kept = tuple(replace(band, stretches=()) for band in bands)
+        return cls(lattice, kept, numbers, stretches, stretches.boxes())
 
     def at(self, iy: int, ix: int, a1: int, swing: int) -> int | None:
         """The set that holds a state, or None when the state is not free."""
@@ -230,8 +233,7 @@ class PoseComponents:
 
     def at_node(self, iy: int, ix: int) -> list[int]:
         """The sets that hold some pose at a node, ascending."""
-        labels = np.unique(self._labels_at(iy, ix))
-        return [int(label) for label in labels[labels >= 0]]
+        return sorted(set(self._labels_at(iy, ix).ravel().tolist()) - {-1})
 
     def straightest(self, iy: int, ix: int, label: int) -> State:
         """The state of a set at one of its nodes whose arm is straightest behind the vehicle."""

@@ -26,7 +26,7 @@ from satAOI_geo.memory import give_back
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import FloorPlan, Obstacle, Region, as_region, polygons_in
 from satAOI_geo.search import Search
-from satAOI_geo.tiles import Bounds, Tile, clipped, cuts, region_of
+from satAOI_geo.tiles import Indexed, Tile, clipped, cuts, region_of
 
 APART_MM: Final = 0.05
 """By how much outlines that run along each other are set apart before they are overlaid. Lines a
@@ -104,7 +104,11 @@ def unreached(
         than a cell are gathered in one patch a tile, after the others.
     """
     blockers = _Blockers(found.plan)
-    whole = _Regions(found.plan.free_region(), region_of(aoi.outlines), region_of(upper.outlines))
+    whole = _Regions(
+        Indexed(found.plan.free_region()),
+        Indexed(region_of(aoi.outlines)),
+        Indexed(region_of(upper.outlines)),
+    )
     pieces: list[_Piece] = []
     narrow: list[Patch] = []
     row_cuts = cuts(found.lattice.n_rows)
@@ -133,13 +137,9 @@ class _Piece(NamedTuple):
 class _Regions(NamedTuple):
     """The free floor, the area of interest, and the area disc-connected with the start."""
 
-    free: Region
-    aoi: Region
-    upper: Region
-
-    def within(self, bounds_mm: Bounds) -> "_Regions":
-        """What of them is in a rectangle."""
-        return _Regions(*(clipped(region, bounds_mm) for region in self))
+    free: Indexed
+    aoi: Indexed
+    upper: Indexed
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,33 +148,29 @@ class _TileRow:
 
     Attributes:
         found: The search.
+        whole: Regions of the whole floor.
         tiles: From left to right.
         rows: Of the lattice, all whose discs come near these tiles.
         fitting: See `_fitting_nodes`, of these rows.
-        regions: Those of the floor near these tiles.
     """
 
     found: Search
+    whole: _Regions
     tiles: list[Tile]
     rows: slice
     fitting: dict[Reason, Nodes]
-    regions: _Regions
 
     @classmethod
     def of(cls, found: Search, cut: slice, whole: _Regions) -> "_TileRow":
         """The tiles over some rows of the lattice."""
         tiles = Tile.row(found.lattice, cut)
-        # what a tile takes of the regions then costs as much as the row is long, not the floor
-        left, bottom, _, _ = tiles[0].around_mm
-        _, _, right, top = tiles[-1].around_mm
         rows, _ = tiles[0].nodes(found.lattice, found.robot.disc_radius_mm)
-        regions = whole.within((left, bottom, right, top))
-        return cls(found, tiles, rows, _fitting_nodes(found, rows), regions)
+        return cls(found, whole, tiles, rows, _fitting_nodes(found, rows))
 
     def left_over(self, k: int) -> tuple[list[_Piece], Region]:
         """What is left over in a tile: pieces of patches, and strips with crumbs."""
         tile, step_mm = self.tiles[k], self.found.lattice.step_mm
-        free, aoi, upper = self.regions.within(tile.around_mm)
+        free, aoi, upper = (region.within(tile.around_mm) for region in self.whole)
         rest = as_region(free.difference(aoi))
         broad, strips = _opened(rest, NARROW_CELLS * step_mm)
         broad, strips = clipped(broad, tile.bounds_mm), clipped(strips, tile.bounds_mm)

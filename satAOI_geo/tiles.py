@@ -8,12 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
+import numpy as np
 import shapely
-from shapely.geometry import MultiPolygon
+from shapely.geometry import MultiPolygon, Polygon
 
 from satAOI_geo.aoi import Outline
 from satAOI_geo.lattice import Lattice
-from satAOI_geo.plan import Region, as_region
+from satAOI_geo.plan import Region, as_region, polygons_in
 
 TILE_CELLS: Final = 2048
 """Side of a tile: 20 m at a step of 10 mm, which most floors of flats and halls fit into."""
@@ -91,6 +92,36 @@ def clipped(region: Region, bounds_mm: Bounds) -> Region:
     GEOS has a quicker way, `clip_by_rect`, which now and then leaves a hole out.
     """
     return as_region(region.intersection(shapely.box(*bounds_mm)))
+
+
+class Indexed:
+    """A region of which the part in a rectangle costs no more than what is near, and its shells.
+
+    Args:
+        region: The region.
+    """
+
+    def __init__(self, region: Region) -> None:
+        self._region = region
+        polygons = polygons_in([region])
+        self._shells = [Polygon(polygon.exterior) for polygon in polygons]
+        self._holes = [
+            np.array([Polygon(hole) for hole in polygon.interiors], dtype=object)
+            for polygon in polygons
+        ]
+        self._shell_tree = shapely.STRtree(self._shells)
+        self._hole_trees = [shapely.STRtree(holes) for holes in self._holes]
+
+    def within(self, bounds_mm: Bounds) -> Region:
+        """The part in a rectangle."""
+        window = shapely.box(*bounds_mm)
+        if window.covers(shapely.box(*self._region.bounds)):
+            return self._region
+        parts = []
+        for k in np.sort(self._shell_tree.query(window)).tolist():
+            near = self._holes[k][np.sort(self._hole_trees[k].query(window))]
+            parts.append((self._shells[k] & window) - shapely.multipolygons(near))
+        return as_region(shapely.GeometryCollection(parts))
 
 
 def region_of(outlines: Sequence[Outline]) -> Region:
