@@ -24,7 +24,9 @@ from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.pipeline import area_of_interest
 from satAOI_geo.reach import Band, DiscComponents, PoseComponents
+from satAOI_geo.reasons import unreached
 from satAOI_geo.robot import ROBOTS
+from satAOI_geo.zones import set_downs, zones
 
 SAMPLE: Final = Path(__file__).parents[1] / "samples" / "hall_complex.dxf"
 COMMAND: Final = "import sys; from satAOI_geo.cli import main; sys.exit(main())"
@@ -61,12 +63,16 @@ def stages(drawing: Path, folder: Path) -> dict[str, Job]:
     space = free_space(engine, robot, lattice)
     free = space.free_nodes()
     result = area_of_interest(plan, robot)
+    found = result.search
     return {
         "read the drawing": lambda: read_plan(drawing),
         "free space": lambda: free_space(Intervals.of(plan, robot, lattice), robot, lattice),
         "disc-connected sets": lambda: DiscComponents.of(free),
         "pose-connected sets": lambda: PoseComponents.of(lattice, [Band.of(engine, robot, space)]),
         "area": lambda: area(free, lattice, robot.disc_radius_mm),
+        "zones": lambda: zones(found.pose, lattice, robot.disc_radius_mm, {}),
+        "set-downs": lambda: set_downs(found.pose, found.free, lattice, robot.disc_radius_mm),
+        "reasons": lambda: unreached(found, result.aoi, result.upper),
         "write the drawing": lambda: write_aoi(folder / "stage.dxf", result),
     }
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from satAOI_geo.aoi import Aoi, area
 from satAOI_geo.bands import Crew
-from satAOI_geo.freespace import run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import FloorPlan
 from satAOI_geo.progress import Progress, Stopwatch
@@ -130,5 +129,8 @@ def _areas(found: Search) -> dict[Connectivity, Aoi]:
     def of_pose() -> Aoi:
         return area(found.pose.nodes(start.pose_label), found.lattice, disc_mm, exact=exact)
 
-    disc, pose = run_threads(lambda k: (of_disc, of_pose)[k](), 2)
+    # what the outline of a large floor takes meanwhile is a good part of a gigabyte
+    n_at_once = 2 if len(found.pose.bands) == 1 else 1
+    with ThreadPoolExecutor(n_at_once) as threads:
+        disc, pose = threads.map(lambda job: job(), (of_disc, of_pose))
     return {"disc": disc, "pose": pose}

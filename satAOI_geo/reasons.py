@@ -10,6 +10,7 @@ area of interest leaves over.
 """
 
 import itertools
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
@@ -17,6 +18,7 @@ from functools import reduce
 from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 import shapely
 from shapely.geometry import Point, Polygon
 
@@ -25,6 +27,7 @@ from satAOI_geo.freespace import run_threads
 from satAOI_geo.memory import give_back
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import FloorPlan, Obstacle, Region, as_region, polygons_in
+from satAOI_geo.runs import roots, unite
 from satAOI_geo.search import Search
 from satAOI_geo.tiles import Indexed, Tile, clipped, cuts, region_of
 
@@ -104,11 +107,7 @@ def unreached(
         than a cell are gathered in one patch a tile, after the others.
     """
     blockers = _Blockers(found.plan)
-    whole = _Regions(
-        Indexed(found.plan.free_region()),
-        Indexed(region_of(aoi.outlines)),
-        Indexed(region_of(upper.outlines)),
-    )
+    whole = _Regions(found.plan.free_region(), Indexed(aoi.outlines), Indexed(upper.outlines))
     pieces: list[_Piece] = []
     narrow: list[Patch] = []
     row_cuts = cuts(found.lattice.n_rows)
@@ -137,7 +136,7 @@ class _Piece(NamedTuple):
 class _Regions(NamedTuple):
     """The free floor, the area of interest, and the area disc-connected with the start."""
 
-    free: Indexed
+    free: Region
     aoi: Indexed
     upper: Indexed
 
@@ -170,13 +169,13 @@ class _TileRow:
     def left_over(self, k: int) -> tuple[list[_Piece], Region]:
         """What is left over in a tile: pieces of patches, and strips with crumbs."""
         tile, step_mm = self.tiles[k], self.found.lattice.step_mm
-        free, aoi, upper = (region.within(tile.around_mm) for region in self.whole)
-        rest = as_region(free.difference(aoi))
+        free = clipped(self.whole.free, tile.around_mm)
+        rest = as_region(free.difference(self.whole.aoi.within(tile.around_mm)))
         broad, strips = _opened(rest, NARROW_CELLS * step_mm)
         broad, strips = clipped(broad, tile.bounds_mm), clipped(strips, tile.bounds_mm)
         if broad.is_empty:
             return [], strips
-        wider = self._fitted(tile) | {Reason.PATH: upper}
+        wider = self._fitted(tile) | {Reason.PATH: self.whole.upper.within(tile.around_mm)}
         pieces = list(_by_reason(polygons_in([broad]), wider, step_mm))
         large = [
             _Piece(reason, _compact(piece), tile.ends(piece))
@@ -240,22 +239,7 @@ def _by_reason(
         step_mm: Side of a cell.
     """
     whole = np.array(parts, dtype=object)
-    inside = whole.copy()
-    # with room for the buffer; overlays of all that is near would cost its whole length
-    around = shapely.box(*(shapely.bounds(whole) + np.array((-1.0, -1.0, 1.0, 1.0))).T)
-    shares = np.full((len(Reason), whole.size), Polygon(), dtype=object)
-    asked = np.arange(whole.size)
-    for order, next_reason in enumerate(list(Reason)[1:]):
-        near = shapely.intersection(wider[next_reason], around[asked])
-        # each area holds the next: where one is met by rounding only, so are all after it
-        near = shapely.buffer(near, -APART_MM * (order + 1))
-        still = shapely.intersection(inside[asked], near)
-        goes_on = shapely.area(still) >= step_mm**2
-        shares[order, asked] = inside[asked]
-        asked, still, near = asked[goes_on], still[goes_on], near[goes_on]
-        shares[order, asked] = shapely.difference(inside[asked], near)
-        inside[asked] = still
-    shares[-1, asked] = inside[asked]
+    shares = _shares(whole, wider, step_mm)
     most = shapely.area(shares).argmax(axis=0)
     others = [
         (k, reason, piece)
@@ -276,13 +260,49 @@ def _by_reason(
         yield from ((list(Reason)[order], piece) for piece in polygons_in([region]))
 
 
+def _shares(
+    parts: npt.NDArray[np.object_], wider: dict[Reason, Region], step_mm: float
+) -> npt.NDArray[np.object_]:
+    """What of each part is left over for each reason, shape (n_reasons, n_parts)."""
+    inside = parts.copy()
+    # with room for the buffer; overlays of all that is near would cost its whole length
+    around = shapely.box(*(shapely.bounds(parts) + np.array((-1.0, -1.0, 1.0, 1.0))).T)
+    shares = np.full((len(Reason), parts.size), Polygon(), dtype=object)
+    asked = np.arange(parts.size)
+    for order, next_reason in enumerate(list(Reason)[1:]):
+        near = shapely.intersection(wider[next_reason], around[asked])
+        # each area holds the next: where one is met by rounding only, so are all after it
+        near = shapely.buffer(near, -APART_MM * (order + 1))
+        still = shapely.intersection(inside[asked], near)
+        goes_on = shapely.area(still) >= step_mm**2
+        shares[order, asked] = inside[asked]
+        asked, still, near = asked[goes_on], still[goes_on], near[goes_on]
+        shares[order, asked] = shapely.difference(inside[asked], near)
+        inside[asked] = still
+    shares[-1, asked] = inside[asked]
+    return shares
+
+
 def _joined(pieces: list[_Piece]) -> Iterator[tuple[Reason, Polygon]]:
     """The patches that pieces make once those of a reason are joined across the seams."""
     for reason in Reason:
         own = [piece for piece in pieces if piece.reason is reason]
         yield from ((reason, piece.region) for piece in own if not piece.at_seam)
-        at_seams = shapely.union_all([piece.region for piece in own if piece.at_seam])
-        yield from ((reason, _compact(region)) for region in polygons_in([at_seams]))
+        at_seams = [piece.region for piece in own if piece.at_seam]
+        yield from ((reason, region) for region in _unions(at_seams))
+
+
+def _unions(regions: list[Polygon]) -> Iterator[Polygon]:
+    """Polygons, those that meet made one; a union of all at once would take gigabytes."""
+    members = np.array(regions, dtype=object)
+    pairs = shapely.STRtree(members).query(members, predicate="intersects").T
+    parents = np.arange(len(regions), dtype=np.int32)
+    unite(parents, pairs.astype(np.int32))
+    groups: defaultdict[int, list[Polygon]] = defaultdict(list)
+    for region, group in zip(regions, roots(parents).tolist(), strict=True):
+        groups[group].append(region)
+    for group in groups.values():
+        yield from map(_compact, polygons_in([shapely.union_all(group)]))
 
 
 def _largest_first(patch: Patch) -> tuple[float, tuple[float, float]]:

@@ -10,11 +10,11 @@ from typing import Final, TypeAlias
 
 import numpy as np
 import shapely
-from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry import MultiPoint, MultiPolygon, Polygon
 
-from satAOI_geo.aoi import Outline
+from satAOI_geo.aoi import Loop, Outline
 from satAOI_geo.lattice import Lattice
-from satAOI_geo.plan import Region, as_region, polygons_in
+from satAOI_geo.plan import FloatArray, Region, as_region, polygons_in
 
 TILE_CELLS: Final = 2048
 """Side of a tile: 20 m at a step of 10 mm, which most floors of flats and halls fit into."""
@@ -95,40 +95,52 @@ def clipped(region: Region, bounds_mm: Bounds) -> Region:
 
 
 class Indexed:
-    """A region of which the part in a rectangle costs no more than what is near, and its shells.
+    """An area of which the part in a rectangle costs no more than what is near, and its shells.
+
+    Its holes, which have most of the corners of a large floor, are polygons only where asked for.
 
     Args:
-        region: The region.
+        outlines: The connected parts of the area.
     """
 
-    def __init__(self, region: Region) -> None:
-        self._region = region
-        polygons = polygons_in([region])
-        self._shells = [Polygon(polygon.exterior) for polygon in polygons]
-        self._holes = [
-            np.array([Polygon(hole) for hole in polygon.interiors], dtype=object)
-            for polygon in polygons
-        ]
+    def __init__(self, outlines: Sequence[Outline]) -> None:
+        self._outlines = outlines
+        self._shells = [Polygon(_corners_mm(outline.exterior)) for outline in outlines]
         self._shell_tree = shapely.STRtree(self._shells)
-        self._hole_trees = [shapely.STRtree(holes) for holes in self._holes]
+        # the discs around a hole reach into it: it lies between its vertices
+        self._hole_trees = [
+            shapely.STRtree([MultiPoint(hole.vertices[:, :2]).envelope for hole in outline.holes])
+            for outline in outlines
+        ]
 
     def within(self, bounds_mm: Bounds) -> Region:
         """The part in a rectangle."""
         window = shapely.box(*bounds_mm)
-        if window.covers(shapely.box(*self._region.bounds)):
-            return self._region
         parts = []
         for k in np.sort(self._shell_tree.query(window)).tolist():
-            near = self._holes[k][np.sort(self._hole_trees[k].query(window))]
-            parts.append((self._shells[k] & window) - shapely.multipolygons(near))
-        return as_region(shapely.GeometryCollection(parts))
+            shell, near = self._shells[k], np.sort(self._hole_trees[k].query(window)).tolist()
+            holes = [_corners_mm(self._outlines[k].holes[hole]) for hole in near]
+            if window.covers(shell):
+                parts.append(Polygon(shell.exterior, holes))
+            else:
+                parts.append((shell & window) - MultiPolygon([(hole, []) for hole in holes]))
+        return _together(polygons_in(parts))
 
 
 def region_of(outlines: Sequence[Outline]) -> Region:
     """The area in some outlines as polygons of its own size."""
-    parts = MultiPolygon([outline.equal_area_polygon(SAGITTA_MM) for outline in outlines])
-    # parts that touch may overlap by a rounding once their arcs are polygons
-    return parts if parts.is_valid else as_region(shapely.union_all(parts.geoms))
+    return _together([outline.equal_area_polygon(SAGITTA_MM) for outline in outlines])
+
+
+def _corners_mm(loop: Loop) -> FloatArray:
+    """Corners of a polygon of a loop's own area, shape (n, 2)."""
+    return loop.equal_area_points_mm(SAGITTA_MM)
+
+
+def _together(parts: list[Polygon]) -> Region:
+    """Parts that touch each other; they may overlap by a rounding once their arcs are polygons."""
+    together = MultiPolygon(parts)
+    return together if together.is_valid else as_region(shapely.union_all(parts))
 
 
 def _sides(cells: slice, n_cells: int) -> tuple[int, int]:
