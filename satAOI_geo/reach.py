@@ -167,17 +167,22 @@ class Band:
         runs = self.runs.holding(iy - self.lattice.first_row, ix)
         sets = np.full(runs.shape, -1, dtype=np.int32)
         sets[runs >= 0] = self.labels[runs[runs >= 0]]
-        for each in self.pages:
-            # what was looked at would count as memory of this process until the system is short
-            if hasattr(mmap, "MADV_DONTNEED"):
-                each.madvise(mmap.MADV_DONTNEED)
+        self._let_go()
         return sets
 
     def on_row(self, iy: int) -> npt.NDArray[np.int32]:
         """The sets of the runs on one of its rows, pose after pose."""
         first = self.runs.first.reshape(-1, self.runs.first.shape[-1])
         spans = zip(first[:, iy].tolist(), first[:, iy + 1].tolist(), strict=True)
-        return np.concatenate([self.labels[begin:end] for begin, end in spans])
+        sets = np.concatenate([self.labels[begin:end] for begin, end in spans])
+        self._let_go()
+        return sets
+
+    def _let_go(self) -> None:
+        """Let what was read of files not count as memory of this process any more."""
+        for each in self.pages:
+            if hasattr(mmap, "MADV_DONTNEED"):
+                each.madvise(mmap.MADV_DONTNEED)
 
 
 @dataclass(frozen=True, slots=True)
