@@ -249,6 +249,9 @@ class _Stack:
 
     def parted(self, cells: Nodes, windows: Sequence[Lattice]) -> list[Nodes]:
         """Cells of the stack in the windows of its sets, what is beyond these cut off."""
+        if len(windows) == 1:
+            # a large set is the stack; its copies would be large, too
+            return [cells]
         return [
             Nodes(
                 cells.window(slice(row, row + window.n_rows), slice(0, window.n_columns)).words

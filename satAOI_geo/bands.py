@@ -115,6 +115,8 @@ def all_explored(
         free[own.first_row : own.first_row + own.n_rows] = part.free.words
         n_states += part.n_states
         bands[number] = part.band.aside() if len(tasks) > 1 else part.band
+        if len(tasks) > 1:
+            give_back()
     return Nodes(free, lattice.n_columns), n_states, tuple(bands[k] for k in range(len(tasks)))
 
 
@@ -135,8 +137,6 @@ def _in_turn(tasks: Sequence[BandTask], watch: Stopwatch) -> Iterator[tuple[int,
         with watch.part(number / len(tasks), (number + 1) / len(tasks)):
             found = explored(task, watch)
         yield number, found
-        if len(tasks) > 1:
-            give_back()
 
 
 def _by_crew(

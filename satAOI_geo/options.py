@@ -166,7 +166,7 @@ SHARING: Final[Group] = (
         type=click.IntRange(min=1),
         panel="The search",
         help="Search the floor in bands of rows, so many at a time, each in a process of its own, "
-        "e.g. --workers 4. The answer is the same. Needs satAOI-geo[cluster].",
+        "e.g. --workers 4. The answer is the same. Needs Dask: pip install distributed.",
     ),
     click.option(
         "--scheduler",
@@ -194,7 +194,7 @@ BATCH: Final[Group] = (
         type=click.IntRange(min=1),
         show_default="one after the other",
         panel="The batch",
-        help="How many plans are run at a time, e.g. --workers 4. Needs satAOI-geo[cluster].",
+        help="How many plans run at a time, e.g. --workers 4. Needs Dask, pip install distributed.",
     ),
     click.option(
         "--scheduler",

@@ -27,6 +27,7 @@ from satAOI_geo.freespace import run_threads
 from satAOI_geo.memory import give_back
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import FloorPlan, Obstacle, Region, as_region, polygons_in
+from satAOI_geo.reach import EVERYTHING
 from satAOI_geo.runs import roots, unite
 from satAOI_geo.search import Search
 from satAOI_geo.tiles import Indexed, Tile, clipped, cuts, region_of
@@ -34,8 +35,6 @@ from satAOI_geo.tiles import Indexed, Tile, clipped, cuts, region_of
 APART_MM: Final = 0.05
 """By how much outlines that run along each other are set apart before they are overlaid. Lines a
 rounding apart cross hundreds of times; what divides one reason from another may move by as much."""
-
-EVERY_ROW: Final = slice(None)
 
 NARROW_CELLS: Final = 2
 """Between the disc and a wall the lattice leaves strips of up to a cell, askew to it 1.4 cells."""
@@ -191,7 +190,7 @@ class _TileRow:
         _, columns = tile.nodes(lattice, disc_mm)
         window = lattice.window(self.rows, columns)
         return {
-            reason: region_of(outlines_of(nodes.window(EVERY_ROW, columns), window, disc_mm))
+            reason: region_of(outlines_of(nodes.window(EVERYTHING, columns), window, disc_mm))
             for reason, nodes in self.fitting.items()
         }
 

@@ -62,7 +62,7 @@ class Tile:
             x_mm + right * step_mm,
             y_mm + top * step_mm,
         )
-        return cls(rows, columns, bounds_mm, grown(bounds_mm, MARGIN_CELLS * step_mm))
+        return cls(rows, columns, bounds_mm, _grown(bounds_mm, MARGIN_CELLS * step_mm))
 
     def nodes(self, lattice: Lattice, disc_mm: float) -> tuple[slice, slice]:
         """Rows and columns of all nodes from which a disc comes near."""
@@ -80,7 +80,7 @@ def cuts(n_cells: int) -> list[slice]:
     return [slice(k, min(k + TILE_CELLS, n_cells)) for k in range(0, n_cells, TILE_CELLS)]
 
 
-def grown(bounds_mm: Bounds, by_mm: float) -> Bounds:
+def _grown(bounds_mm: Bounds, by_mm: float) -> Bounds:
     """A rectangle and what is beside it."""
     left, bottom, right, top = bounds_mm
     return left - by_mm, bottom - by_mm, right + by_mm, top + by_mm

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from shapely.geometry import Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from satAOI_geo.aoi import CLEAN_MM, Aoi, Loop, area
+from satAOI_geo.aoi import CLEAN_MM, Aoi, Loop, area, areas
 from satAOI_geo.errors import InputError
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.nodes import Nodes
@@ -275,6 +275,22 @@ def test_raster_is_cut_off_at_the_lattice_and_the_outline_is_not() -> None:
     corner = at((0, 0), shape=(3, 3), radius=35.0).aoi()
     assert corner.raster.all()
     assert corner.area_mm2 == pytest.approx(math.pi * DISC_MM**2, rel=1e-13)
+
+
+def test_sets_of_nodes_looked_at_together_cover_what_each_covers_alone() -> None:
+    rng = np.random.default_rng(7)
+    shapes = [(30, 70), (5, 64), (41, 130), (1, 1)]
+    # the first row and the last: discs reach beyond both ends of each window
+    sets = [Nodes.of((rng.random(shape) < 0.2) | (np.indices(shape)[0] == 0)) for shape in shapes]
+    windows = [lattice_of(shape) for shape in shapes]
+    radius_mm = 7.3 * STEP_MM
+    for together, nodes, window in zip(areas(sets, windows, radius_mm), sets, windows, strict=True):
+        alone = area(nodes, window, radius_mm)
+        assert np.array_equal(together.raster, alone.raster)
+        assert together.raster_area_mm2 == alone.raster_area_mm2
+        pairs = zip(loops(together), loops(alone), strict=True)
+        for loop, same in pairs:
+            assert loop.vertices == pytest.approx(same.vertices, abs=1e-9)
 
 
 def test_area_of_a_loop_is_signed() -> None:

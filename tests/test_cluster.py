@@ -194,7 +194,7 @@ def test_workers_need_dask(
     monkeypatch.setitem(sys.modules, "distributed", None)
     for option in (["--workers", "2"], ["--scheduler", "tcp://127.0.0.1:1"]):
         assert main([str(HALL), *option]) == 2
-        assert "pip install 'satAOI-geo[cluster]'" in the_error(capsys)
+        assert "pip install distributed" in the_error(capsys)
 
 
 def test_workers_here_and_elsewhere_are_refused() -> None:

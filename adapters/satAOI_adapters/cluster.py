@@ -121,7 +121,7 @@ def _dask_set(config: dict[str, object]) -> AbstractContextManager[object]:
         import distributed  # noqa: F401  brings its own part of the configuration
     except ImportError as error:
         raise InputError(
-            "--workers and --scheduler need Dask; install it with pip install 'satAOI-geo[cluster]'"
+            "--workers and --scheduler need Dask; install it with: pip install distributed"
         ) from error
     config_set: AbstractContextManager[object] = dask.config.set(config)
     return config_set

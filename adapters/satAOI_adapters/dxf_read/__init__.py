@@ -1,7 +1,7 @@
 """Read floor plans from DXF drawings.
 
 The way of a drawing, one module a stage: `opening` (bytes to document), `expand` (blocks
-resolved), `survey` (meaning, unit, size; `frames`, `tiles` and `lookalikes` tell by its look what
+resolved), `survey` (meaning, unit, size; `frames`, `joints` and `lookalikes` tell by its look what
 no name tells), `entities` and `curves` (exact geometry), `shapes` (polygons on a stated side),
 `obstacles` and `linework` (walls, columns, holes), `floor`, `reading` (the plan).
 """

@@ -17,12 +17,12 @@ from satAOI_adapters.dxf_read.estimate import estimate
 from satAOI_adapters.dxf_read.expand import Expansion, Placed, expand
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.frames import without_frames
+from satAOI_adapters.dxf_read.joints import with_tiles
 from satAOI_adapters.dxf_read.lookalikes import with_lookalikes
 from satAOI_adapters.dxf_read.meaning import LISTED, Seen, with_meaning
 from satAOI_adapters.dxf_read.opening import open_drawing
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.plans import Drawn
-from satAOI_adapters.dxf_read.tiles import with_tiles
 from satAOI_adapters.dxf_read.units import Known, Unit, unit_of
 from satAOI_adapters.dxf_read.unread import (
     foreign_fault,

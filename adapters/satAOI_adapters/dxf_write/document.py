@@ -148,7 +148,7 @@ def _turn_ellipses(document: Drawing) -> None:
     """Let the longer axis of every ellipse be its first, without which none is written."""
     for entity in document.entitydb.values():
         if isinstance(entity, Ellipse) and entity.dxf.ratio > 1:
-            entity.swap_axis()  # type: ignore[no-untyped-call]
+            entity.swap_axis()  # type: ignore[no-untyped-call]  # ezdxf gives it no types
 
 
 def _remove_earlier_output(document: Drawing) -> None:
