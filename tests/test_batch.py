@@ -162,14 +162,20 @@ def test_a_worker_killed_on_the_way_changes_no_result(
     monkeypatch.chdir(rooms)
     before, killed = rows_of(rooms), []
 
+    def works(worker: int) -> bool:
+        """Whether it runs a plan; as it starts it may have other children."""
+        with contextlib.suppress(psutil.NoSuchProcess):
+            runs = [child.cmdline() for child in psutil.Process(worker).children()]
+            return any(batch.PROGRAM in run for run in runs)
+        return False
+
     def kill_the_first_that_works() -> None:
         while not killed:
             time.sleep(0.01)
             for process in multiprocessing.active_children():
-                with contextlib.suppress(psutil.NoSuchProcess):
-                    if psutil.Process(process.pid).children():
-                        process.kill()
-                        killed.append(process.pid)
+                if works(process.pid):
+                    process.kill()
+                    killed.append(process.pid)
 
     killer = threading.Thread(target=kill_the_first_that_works)
     killer.start()
