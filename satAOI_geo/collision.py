@@ -13,10 +13,9 @@ import shapely
 from shapely.geometry import LineString, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
-from satAOI_geo.engine import AtRest
 from satAOI_geo.lattice import Lattice, Words
 from satAOI_geo.nodes import Nodes
-from satAOI_geo.plan import CONTACT_MM, Circle, FloorPlan, Obstacle, Shape, polygons_in
+from satAOI_geo.plan import CONTACT_MM, Circle, FloorPlan, IntArray, Obstacle, Shape, polygons_in
 from satAOI_geo.robot import Part, Pose, Robot, unit
 from satAOI_geo.sweep import stepped
 
@@ -102,16 +101,17 @@ class Reference:
         self._collider = collider
         self._lattice = lattice
 
-    def at_rest(self, part: Part) -> AtRest:
-        """The nodes at which the part touches something, and the steps between them."""
+    def block(self, words: Words, part: Part) -> IntArray:
+        """Set the bits of the nodes at which the part touches something; the steps it bars."""
         blocked = self.blocked(part)
+        words |= blocked
         barred = []
         for rows_up, columns_right in ((0, 1), (1, 0)):
             step_mm = np.array((columns_right, rows_up)) * self._lattice.step_mm
-            swept = self.blocked(stepped(part, step_mm)) & ~blocked
-            nodes = Nodes(swept, self._lattice.n_columns).as_array()
+            (swept,) = stepped([part], step_mm)
+            nodes = Nodes(self.blocked(swept) & ~blocked, self._lattice.n_columns).as_array()
             barred += [(rows_up, iy, ix) for iy, ix in np.argwhere(nodes).tolist()]
-        return AtRest(blocked, np.array(barred, dtype=np.int64).reshape(-1, 3))
+        return np.array(barred, dtype=np.int64).reshape(-1, 3)
 
     def band(self, rows: slice) -> "Reference":
         """An engine for some rows of the lattice, with start and stop."""

@@ -5,6 +5,7 @@ leaves the angles at both its ends convex. At most four times as many pieces rem
 division has; a convex polygon becomes one.
 """
 
+import math
 from typing import Final, TypeAlias
 
 import numpy as np
@@ -27,9 +28,10 @@ def convex_pieces(polygon: Polygon) -> list[FloatArray]:
     Returns:
         The corners of each piece, shape (n, 2), counter-clockwise, the first not repeated.
     """
+    triangles = shapely.orient_polygons(_triangles(polygon))
     rings = [
-        [(x, y) for x, y, *_ in shapely.orient_polygons(triangle).exterior.coords[:-1]]
-        for triangle in _triangles(polygon)
+        [(x, y) for x, y in ring[:3]]
+        for ring in shapely.get_coordinates(triangles).reshape(-1, 4, 2).tolist()
     ]
     # a piece lives at the number of one of its triangles; the others lead to it
     pieces: list[list[Point]] = rings
@@ -93,4 +95,4 @@ def _bends_left(before: Point, at: Point, after: Point) -> bool:
     """Whether a chain of three points bends left or runs straight on."""
     ax, ay = at[0] - before[0], at[1] - before[1]
     bx, by = after[0] - at[0], after[1] - at[1]
-    return ax * by - ay * bx >= -STRAIGHT * float(np.hypot(ax, ay) * np.hypot(bx, by))
+    return ax * by - ay * bx >= -STRAIGHT * math.hypot(ax, ay) * math.hypot(bx, by)

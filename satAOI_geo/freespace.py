@@ -4,14 +4,14 @@ import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
 from typing import TypeVar
 
 import numpy as np
 
 from satAOI_geo.engine import Engine
+from satAOI_geo.kernels import kernel
 from satAOI_geo.lattice import WORD_BITS, Lattice, Words
-from satAOI_geo.nodes import Nodes, from_above, from_right
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import IntArray
 from satAOI_geo.robot import Part, Robot
 from satAOI_geo.sweep import carried, turned
@@ -27,7 +27,7 @@ class FreeSpace:
         lattice: Nodes and directions.
         words: Shape (n_directions, n_swings, n_rows, n_words); a bit is set where the pose is free.
         barred: barred[a1][swing] are the steps from a free node to a free neighbour that something
-            between the two bars, shape (n, 3), see `engine.AtRest`.
+            between the two bars, shape (n, 3), see `Engine.block`.
     """
 
     lattice: Lattice
@@ -45,11 +45,8 @@ class FreeSpace:
     def steps(self, a1: int, swing: int, *, rows_up: int) -> Words:
         """Nodes from which the disc may step up (rows_up 1) or right (0), the pose kept."""
         free = self.words[a1, swing]
-        steps: Words = free & (from_above(free) if rows_up else from_right(free))
-        barred = self.barred[a1][swing]
-        iy, ix = barred[barred[:, 0] == rows_up, 1:].T
-        bits = np.uint64(1) << (ix % WORD_BITS).astype(np.uint64)
-        np.bitwise_and.at(steps, (iy, ix // WORD_BITS), ~bits)
+        steps: Words = np.empty_like(free)
+        _steps(free, self.barred[a1][swing], rows_up, steps)
         return steps
 
     def n_states(self, rows: slice = slice(None)) -> int:
@@ -67,7 +64,7 @@ class Move:
         to_a1: Direction number of the pose it ends at.
         to_swing: Swing number of the pose it ends at.
         unless_vehicle: Nodes at which it touches nothing but perhaps with the vehicle on its way.
-        sweep: Makes the part that the vehicle sweeps.
+        sweep: What the vehicle sweeps.
     """
 
     a1: int
@@ -75,11 +72,14 @@ class Move:
     to_a1: int
     to_swing: int
     unless_vehicle: Words
-    sweep: Callable[[], Part]
+    sweep: Part
 
     def allowed(self, engine: Engine) -> Words:
         """Nodes at which it may be made: both ends and all between them touch nothing."""
-        return self.unless_vehicle & ~engine.blocked(self.sweep())
+        allowed = engine.blocked(self.sweep)
+        np.invert(allowed, out=allowed)
+        allowed &= self.unless_vehicle
+        return allowed
 
 
 def free_space(
@@ -95,13 +95,14 @@ def free_space(
     directions = lattice.directions()
 
     def fill(a1: int) -> tuple[IntArray, ...]:
-        capsule = engine.at_rest(robot.capsule(directions[a1]))
+        capsule = lattice.no_nodes()
+        of_capsule = engine.block(capsule, robot.capsule(directions[a1]))
+        words[a1] = capsule
         barred = []
-        for swing, turn in enumerate(lattice.swings):
-            heading = directions[(a1 + turn) % lattice.n_directions]
-            vehicle = engine.at_rest(robot.vehicle(directions[a1], heading))
-            words[a1, swing] = ~(capsule.blocked | vehicle.blocked)
-            barred.append(np.concatenate((capsule.barred, vehicle.barred)))
+        for swing, vehicle in enumerate(_vehicles(robot, lattice, a1)):
+            of_vehicle = engine.block(words[a1, swing], vehicle)
+            barred.append(np.concatenate((of_capsule, of_vehicle)))
+        np.invert(words[a1], out=words[a1])
         return tuple(barred)
 
     barred = run_threads(fill, lattice.n_directions, progress)
@@ -114,34 +115,44 @@ def moves(engine: Engine, robot: Robot, space: FreeSpace, a1: int) -> Iterator[M
     Each kind is listed once; the way back is the same move.
     """
     lattice = space.lattice
-    directions = lattice.directions()
     n_directions, n_swings = lattice.n_directions, len(lattice.swings)
     turn_rad = 2 * np.pi / n_directions
-    arm, next_a1 = directions[a1], (a1 + 1) % n_directions
-    pivot_mm = robot.arm_length_mm * arm
-    disc_mm = np.zeros(2)
-    arm_turns = ~engine.blocked(turned(robot.capsule(arm), disc_mm, turn_rad))
+    arm, next_a1 = lattice.directions()[a1], (a1 + 1) % n_directions
+    pivot_mm, disc_mm = robot.arm_length_mm * arm, np.zeros(2)
+    (arm_turned,) = turned([robot.capsule(arm)], disc_mm, turn_rad)
+    arm_turns = ~engine.blocked(arm_turned)
 
-    for swing, turn in enumerate(lattice.swings):
+    vehicles = _vehicles(robot, lattice, a1)
+    about_disc = turned(vehicles, disc_mm, turn_rad)
+    about_pivot = turned(vehicles, pivot_mm, turn_rad)
+    orbits = carried(vehicles, pivot_mm, turn_rad)
+
+    for swing in range(n_swings):
         free = space.words[a1, swing]
-        vehicle = robot.vehicle(arm, directions[(a1 + turn) % n_directions])
-
-        ends = free & space.words[next_a1, swing] & arm_turns
-        about_disc = partial(turned, vehicle, disc_mm, turn_rad)
-        yield Move(a1, swing, next_a1, swing, ends, about_disc)
+        ends = free & space.words[next_a1, swing]
+        ends &= arm_turns
+        yield Move(a1, swing, next_a1, swing, ends, about_disc[swing])
 
         # a swing range of a full turn is a ring: its last swing is beside its first
         wider = _neighbour(swing + 1, n_swings, ring=n_swings == n_directions)
         if wider is not None:
             ends = free & space.words[a1, wider]
-            about_pivot = partial(turned, vehicle, pivot_mm, turn_rad)
-            yield Move(a1, swing, a1, wider, ends, about_pivot)
+            yield Move(a1, swing, a1, wider, ends, about_pivot[swing])
 
         narrower = _neighbour(swing - 1, n_swings, ring=n_swings == n_directions)
         if narrower is not None:
-            ends = free & space.words[next_a1, narrower] & arm_turns
-            orbit = partial(carried, vehicle, pivot_mm, turn_rad)
-            yield Move(a1, swing, next_a1, narrower, ends, orbit)
+            ends = free & space.words[next_a1, narrower]
+            ends &= arm_turns
+            yield Move(a1, swing, next_a1, narrower, ends, orbits[swing])
+
+
+def _vehicles(robot: Robot, lattice: Lattice, a1: int) -> list[Part]:
+    """The vehicle at each swing of a direction."""
+    directions = lattice.directions()
+    return [
+        robot.vehicle(directions[a1], directions[(a1 + turn) % lattice.n_directions])
+        for turn in lattice.swings
+    ]
 
 
 def run_threads(
@@ -158,6 +169,27 @@ def run_threads(
             if progress is not None:
                 progress(len(answers) / n_jobs)
     return answers
+
+
+@kernel("void(const uint64[:, :], const int64[:, :], int64, uint64[:, :])")
+def _steps(free: Words, barred: IntArray, rows_up: int, steps: Words) -> None:
+    """Write the nodes from which a step leads to a free neighbour; see `FreeSpace`."""
+    n_rows, n_words = free.shape
+    top = np.uint64(WORD_BITS - 1)
+    for iy in range(n_rows):
+        for word in range(n_words):
+            beyond = np.uint64(0)
+            if rows_up == 0:
+                beyond = free[iy, word] >> np.uint64(1)
+                if word + 1 < n_words:
+                    beyond |= free[iy, word + 1] << top
+            elif iy + 1 < n_rows:
+                beyond = free[iy + 1, word]
+            steps[iy, word] = free[iy, word] & beyond
+    for k in range(barred.shape[0]):
+        if barred[k, 0] == rows_up:
+            iy, ix = barred[k, 1], barred[k, 2]
+            steps[iy, ix // WORD_BITS] &= ~(np.uint64(1) << np.uint64(ix % WORD_BITS))
 
 
 def _cores() -> int:

@@ -20,7 +20,6 @@ import numpy as np
 from shapely.geometry import LineString
 
 from satAOI_geo.convex import convex_pieces
-from satAOI_geo.engine import AtRest
 from satAOI_geo.kernels import filled, helper, kernel
 from satAOI_geo.lattice import Lattice, Words
 from satAOI_geo.plan import (
@@ -117,10 +116,9 @@ class Intervals:
         reach_mm = 1.5 * robot.reach_mm + lattice.step_mm + keep_mm
         return cls(lattice, Pieces.of(plan, lattice, reach_mm), keep_mm, reach_mm)
 
-    def at_rest(self, part: Part) -> AtRest:
-        """The nodes at which the part touches something, and the steps between them."""
-        words = self.lattice.no_nodes()
-        return AtRest(words, self._block(words, part, watch=True))
+    def block(self, words: Words, part: Part) -> IntArray:
+        """Set the bits of the nodes at which the part touches something; the steps it bars."""
+        return self._block(words, part, watch=True)
 
     def band(self, rows: slice) -> "Intervals":
         """An engine for some rows of the lattice, with start and stop."""
@@ -231,7 +229,7 @@ def _block(
         corners: Room for x and y of the corners of a sum, the first one twice.
         flanks: Room for its left and right end in each row.
         watch: Whether to look for steps that a piece bars between their ends.
-        barred: Room for such steps, three numbers each, see `engine.AtRest`.
+        barred: Room for such steps, three numbers each, see `Engine.block`.
 
     Returns:
         How many such steps there are.
@@ -254,6 +252,7 @@ def _block(
         low, high = max(first_row, lowest), min(first_row + n_rows - 1, highest)
         _right_flank(sum_x, sum_y, n_rising, r, low, high, first_row, right)
         _left_flank(sum_x, sum_y, n_rising, n_corners, r, low, high, first_row, left)
+        _to_columns(left[low - first_row : high - first_row + 1], right[low - first_row :])
         for iy in range(low - first_row, high - first_row + 1):
             begin_ix, end_ix = _columns(left[iy], right[iy], n_columns)
             if begin_ix <= end_ix:
@@ -278,9 +277,20 @@ def _block(
 
 
 @helper
+def _to_columns(left: FloatArray, right: FloatArray) -> None:
+    """Move the ends of intervals inwards, to the next whole column."""
+    for k in range(left.size):
+        left[k] = np.ceil(left[k])
+        right[k] = np.floor(right[k])
+
+
+@helper
 def _columns(left: float, right: float, n_columns: int) -> tuple[int, int]:
-    """First and last column from left to right; the last comes before the first where none is."""
-    return max(0, math.ceil(left)), min(n_columns - 1, math.floor(right))
+    """First and last of the lattice's columns from one whole number to another.
+
+    The last comes before the first where there are none.
+    """
+    return int(max(0.0, left)), int(min(n_columns - 1.0, right))
 
 
 @helper
@@ -304,7 +314,7 @@ def _bar_steps_up(
     these between the two.
 
     Args:
-        barred: Room for three numbers a step, see `engine.AtRest`.
+        barred: Room for three numbers a step, see `Engine.block`.
         n_barred: How many steps there are before.
         left: Left end in the rows that the polygon meets, from first_row on.
         right: Right end.
@@ -325,7 +335,7 @@ def _bar_steps_up(
     for row in range(max(first_row, lowest - 1), min(last_row - 1, highest) + 1):
         iy = row - first_row
         is_plain = lowest <= row < highest and row not in (leftmost_row, rightmost_row)
-        if is_plain and max(left[iy], left[iy + 1]) + 1 <= min(right[iy], right[iy + 1]):
+        if is_plain and max(left[iy], left[iy + 1]) <= min(right[iy], right[iy + 1]):
             # both rows hold a common node, and the polygon does not reach beyond them between
             continue
         least, greatest = math.inf, -math.inf
@@ -338,9 +348,9 @@ def _bar_steps_up(
             least, greatest = min(least, left[iy + 1]), max(greatest, right[iy + 1])
             next_begin_ix, next_end_ix = _columns(left[iy + 1], right[iy + 1], n_columns)
         if row == leftmost_row:
-            least = min(least, x[leftmost] - r)
+            least = min(least, math.ceil(x[leftmost] - r))
         if row == rightmost_row:
-            greatest = max(greatest, x[rightmost] + r)
+            greatest = max(greatest, math.floor(x[rightmost] + r))
         ix, last_ix = _columns(least, greatest, n_columns)
         while ix <= last_ix:
             if begin_ix <= ix <= end_ix:
@@ -391,9 +401,11 @@ def _minkowski_sum(
     n_b = bx.size if bx.size > 1 else 0
     sum_x[0], sum_y[0] = ax[0] + bx[0], ay[0] + by[0]
     i = j = n = n_rising = 0
+    # the corners at which the edges i and j begin: a remainder would take longer than all else
+    a = b = 0
     while i < n_a or j < n_b:
-        a, a_next = i % ax.size, (i + 1) % ax.size
-        b, b_next = j % bx.size, (j + 1) % bx.size
+        a_next = a + 1 if a + 1 < ax.size else 0
+        b_next = b + 1 if b + 1 < bx.size else 0
         adx, ady = ax[a_next] - ax[a], ay[a_next] - ay[a]
         bdx, bdy = bx[b_next] - bx[b], by[b_next] - by[b]
         # rising edges before falling ones, so that the cross product only ever compares
@@ -411,10 +423,12 @@ def _minkowski_sum(
             take_a, take_b = cross >= 0.0, cross <= 0.0
         n += 1
         rises = (take_a and a_rises) or (take_b and b_rises)
-        i += take_a
-        j += take_b
-        sum_x[n] = ax[i % ax.size] + bx[j % bx.size]
-        sum_y[n] = ay[i % ax.size] + by[j % bx.size]
+        if take_a:
+            i, a = i + 1, a_next
+        if take_b:
+            j, b = j + 1, b_next
+        sum_x[n] = ax[a] + bx[b]
+        sum_y[n] = ay[a] + by[b]
         if rises:
             n_rising = n
     return n, n_rising
@@ -495,9 +509,10 @@ def _arc(
 ) -> int:
     """Fill rows from iy up to `last` with the circle of radius r about (vx, vy); next row."""
     next_iy = max(iy, math.floor(last) + 1)
-    for row in range(iy, next_iy):
-        rise = row - vy
-        flank[row - first_row] = vx + side * math.sqrt(max(0.0, r * r - rise * rise))
+    rows = flank[iy - first_row : next_iy - first_row]
+    for k in range(rows.size):
+        rise = (iy + k) - vy
+        rows[k] = vx + side * math.sqrt(max(0.0, r * r - rise * rise))
     return next_iy
 
 
@@ -507,8 +522,9 @@ def _line(
 ) -> int:
     """Fill rows from iy up to `last` with the line through (x0, y0); next row."""
     next_iy = max(iy, math.floor(last) + 1)
-    for row in range(iy, next_iy):
-        flank[row - first_row] = x0 + (row - y0) * slope
+    rows = flank[iy - first_row : next_iy - first_row]
+    for k in range(rows.size):
+        rows[k] = x0 + ((iy + k) - y0) * slope
     return next_iy
 
 

@@ -312,9 +312,12 @@ class _Joined:
         self._one_at_a_time = Lock()
 
     def by_steps_up(self, space: FreeSpace, a1: int, swing: int) -> None:
-        """Join the runs of a pose that steps from row to row lead between."""
+        """Join the runs of a pose that steps from row to row lead between.
+
+        No other pose has these runs, so other threads may do the same for theirs.
+        """
         allowed = space.steps(a1, swing, rows_up=1)
-        self._unite(Meeting.upwards(self._runs, (a1, swing)).links(allowed))
+        unite(self.parents, Meeting.upwards(self._runs, (a1, swing)).links(allowed))
 
     def by_move(self, move: Move) -> None:
         """Join the runs of two poses that a move leads between.
@@ -323,11 +326,9 @@ class _Joined:
         """
         meeting = Meeting.of(self._runs, (move.a1, move.swing), (move.to_a1, move.to_swing))
         if meeting.are_apart(self.parents, move.unless_vehicle):
-            self._unite(meeting.links(move.allowed(self._engine)))
-
-    def _unite(self, pairs: npt.NDArray[np.int32]) -> None:
-        with self._one_at_a_time:
-            unite(self.parents, pairs)
+            pairs = meeting.links(move.allowed(self._engine))
+            with self._one_at_a_time:
+                unite(self.parents, pairs)
 
 
 def _thirds(progress: Callable[[float], None] | None) -> list[Callable[[float], None] | None]:

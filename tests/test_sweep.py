@@ -50,7 +50,7 @@ def test_step_sweeps_all_between_its_ends(
 ) -> None:
     step_mm = np.array((dx_mm, dy_mm))
     for part in (robot.capsule(unit(a1_rad)), robot.vehicle(unit(a1_rad), unit(yaw_rad))):
-        swept = stepped(part, step_mm)
+        (swept,) = stepped([part], step_mm)
         on_the_way = [part.corners_mm + share * step_mm for share in INSTANTS]
         assert excess_mm(on_the_way, swept) < ROUNDING_MM
 
@@ -60,7 +60,7 @@ def test_turn_about_the_disc_sweeps_all_between_its_ends(
     robot: Robot, a1_rad: float, yaw_rad: float, turn_rad: float
 ) -> None:
     for part in (robot.capsule(unit(a1_rad)), robot.vehicle(unit(a1_rad), unit(yaw_rad))):
-        swept = turned(part, DISC_MM, turn_rad)
+        (swept,) = turned([part], DISC_MM, turn_rad)
         on_the_way = [rotated(part.corners_mm, DISC_MM, share * turn_rad) for share in INSTANTS]
         assert excess_mm(on_the_way, swept) < ROUNDING_MM
 
@@ -75,7 +75,7 @@ def test_swing_about_the_pivot_sweeps_all_between_its_ends(
     on_the_way = [
         robot.vehicle(arm, unit(yaw_rad + share * turn_rad)).corners_mm for share in INSTANTS
     ]
-    swept = turned(robot.vehicle(arm, unit(yaw_rad)), pivot_mm, turn_rad)
+    (swept,) = turned([robot.vehicle(arm, unit(yaw_rad))], pivot_mm, turn_rad)
     assert excess_mm(on_the_way, swept) < ROUNDING_MM
 
 
@@ -89,7 +89,7 @@ def test_orbit_sweeps_all_between_its_ends(
         robot.vehicle(unit(a1_rad + share * turn_rad), heading).corners_mm for share in INSTANTS
     ]
     pivot_mm = robot.arm_length_mm * unit(a1_rad)
-    swept = carried(robot.vehicle(unit(a1_rad), heading), pivot_mm, turn_rad)
+    (swept,) = carried([robot.vehicle(unit(a1_rad), heading)], pivot_mm, turn_rad)
     assert excess_mm(on_the_way, swept) < ROUNDING_MM
 
 
@@ -97,7 +97,7 @@ def test_orbit_sweeps_all_between_its_ends(
 def test_turn_ends_at_the_next_pose(
     robot: Robot, a1_rad: float, yaw_rad: float, turn_rad: float
 ) -> None:
-    swept = turned(robot.vehicle(unit(a1_rad), unit(yaw_rad)), DISC_MM, turn_rad)
+    (swept,) = turned([robot.vehicle(unit(a1_rad), unit(yaw_rad))], DISC_MM, turn_rad)
     end = robot.vehicle(unit(a1_rad + turn_rad), unit(yaw_rad + turn_rad))
     assert excess_mm([end.corners_mm], swept) < ROUNDING_MM
 
@@ -108,36 +108,37 @@ def test_turn_sweeps_no_farther_than_the_push_beyond_the_arc(
 ) -> None:
     vehicle = robot.vehicle(unit(a1_rad), unit(yaw_rad))
     farthest_mm = np.hypot(*vehicle.corners_mm.T).max()
-    swept_mm = np.hypot(*turned(vehicle, DISC_MM, turn_rad).corners_mm.T).max()
+    (swept,) = turned([vehicle], DISC_MM, turn_rad)
+    swept_mm = np.hypot(*swept.corners_mm.T).max()
     assert swept_mm <= farthest_mm / math.cos(turn_rad / 2) * (1 + 1e-12)
 
 
 def test_turn_of_15_degrees_adds_less_than_one_percent_to_the_hull_of_what_it_sweeps() -> None:
     vehicle = PROTOTYPE.vehicle(unit(0), unit(0))
-    swept = core(turned(vehicle, DISC_MM, math.radians(15)))
+    (swept,) = turned([vehicle], DISC_MM, math.radians(15))
     turns_rad = np.linspace(0, math.radians(15), 200)
     passed = np.concatenate([rotated(vehicle.corners_mm, DISC_MM, turn) for turn in turns_rad])
     radius_mm = math.hypot(1574.5, 415)
     # 1 / cos(7.5°) - 1 is 0.86 %
-    assert swept.hausdorff_distance(MultiPoint(passed).convex_hull) < 0.01 * radius_mm
+    assert core(swept).hausdorff_distance(MultiPoint(passed).convex_hull) < 0.01 * radius_mm
 
 
 @given(directions, turns_rad)
 def test_capsule_turned_about_the_disc_is_a_sector(a1_rad: float, turn_rad: float) -> None:
     spine_mm = PROTOTYPE.arm_length_mm - PROTOTYPE.disc_radius_mm
-    swept = turned(PROTOTYPE.capsule(unit(a1_rad)), DISC_MM, turn_rad)
+    (swept,) = turned([PROTOTYPE.capsule(unit(a1_rad))], DISC_MM, turn_rad)
     # a kite: two spines and, half-way, the meeting point of the tangents at their ends
     assert core(swept).area == pytest.approx(spine_mm**2 * math.tan(turn_rad / 2), rel=1e-9)
     assert swept.radius_mm == PROTOTYPE.disc_radius_mm
 
 
 def test_capsule_stepped_along_itself_is_a_longer_capsule() -> None:
-    swept = stepped(PROTOTYPE.capsule(unit(0)), np.array((10.0, 0.0)))
+    (swept,) = stepped([PROTOTYPE.capsule(unit(0))], np.array((10.0, 0.0)))
     assert sorted(swept.corners_mm.tolist()) == [[0, 0], [655, 0]]
 
 
 def test_vehicle_stepped_along_itself_is_a_longer_vehicle() -> None:
-    swept = stepped(PROTOTYPE.vehicle(unit(0), unit(0)), np.array((10.0, 0.0)))
+    (swept,) = stepped([PROTOTYPE.vehicle(unit(0), unit(0))], np.array((10.0, 0.0)))
     assert core(swept).area == 885 * 830
 
 
@@ -147,9 +148,9 @@ def test_corners_of_a_swept_part_run_counter_clockwise(
 ) -> None:
     vehicle = robot.vehicle(unit(a1_rad), unit(0.3))
     for swept in (
-        stepped(vehicle, np.array((0.0, 10.0))),
-        turned(vehicle, DISC_MM, turn_rad),
-        carried(vehicle, robot.arm_length_mm * unit(a1_rad), turn_rad),
+        *stepped([vehicle], np.array((0.0, 10.0))),
+        *turned([vehicle], DISC_MM, turn_rad),
+        *carried([vehicle], robot.arm_length_mm * unit(a1_rad), turn_rad),
     ):
         assert shapely.is_ccw(Polygon(swept.corners_mm).exterior)
         assert Polygon(swept.corners_mm).area == pytest.approx(core(swept).area, rel=1e-12)
@@ -165,6 +166,19 @@ def test_disc_without_an_arm_turns_on_the_spot() -> None:
         arm_length_mm=200.0,
         disc_radius_mm=200.0,
     )
-    swept = turned(robot.capsule(unit(0)), DISC_MM, math.radians(15))
+    (swept,) = turned([robot.capsule(unit(0))], DISC_MM, math.radians(15))
     assert np.all(swept.corners_mm == 0)
     assert swept.radius_mm == 200
+
+
+@given(robots(), st.lists(directions, min_size=2, max_size=5), turns_rad)
+def test_parts_swept_together_are_those_swept_one_by_one(
+    robot: Robot, a1s_rad: list[float], turn_rad: float
+) -> None:
+    vehicles = [robot.vehicle(unit(a1_rad), unit(0.3)) for a1_rad in a1s_rad]
+    pivot_mm = robot.arm_length_mm * unit(1.0)
+    for sweep in (turned, carried):
+        together = sweep(vehicles, pivot_mm, turn_rad)
+        alone = [part for vehicle in vehicles for part in sweep([vehicle], pivot_mm, turn_rad)]
+        for one, other in zip(together, alone, strict=True):
+            assert np.array_equal(one.corners_mm, other.corners_mm)
