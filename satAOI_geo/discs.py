@@ -37,12 +37,18 @@ NOISE_RAD = 1e-13
 TURN = 2 * math.pi
 
 
-BEGIN, END, OPENER, CLOSER = 0, 1, 2, 4
+BEGIN, END, BEGIN_AT, END_AT = 0, 1, 2, 4
 """Columns of an array of gaps, stretches of a node's circle that no disc looked at so far covers:
 directions in which the gap begins and ends, counter-clockwise in rad, begin < end; then x and y
-from the node to the opener, and to the closer. A circle that nothing covers yet is one gap from -π
-to π with (0, 0) for both. The kernels pass plain arrays: a cache of compiled code that names a
-class cannot be read once the class is gone."""
+from the node to where it begins, and to where it ends. A circle that nothing covers yet is one gap
+from -π to π. The kernels pass plain arrays: a cache of compiled code that names a class cannot be
+read once the class is gone."""
+
+N_GAPS = 9
+"""Room for what 8 neighbours leave of a circle: each parts one gap in two at most."""
+
+N_AROUND = 9
+"""Nodes of the square of a node and its 8 neighbours."""
 
 
 def covered_cells(reached: Nodes, radius: float) -> Nodes:
@@ -94,14 +100,25 @@ def boundary(reached: Nodes, radius: float) -> Arcs:
     is_fine = 2 * radius * radius > 1 + TIE
     side = math.ceil(radius)
     nodes, first = _sorted(_exposed(reached) if is_fine else reached, side)
-    # each disc looked at parts one gap in two at most: 8 neighbours, then the exposed nodes
-    gaps = np.empty((2, 1 + 8 + len(nodes), 6))
+    beside, n_beside = _beside_neighbours(radius)
+    # each disc looked at parts one gap in two at most
+    gaps = np.empty((1 + len(nodes), 6))
     table = filled(
-        lambda room: _uncovered(reached.words, nodes, first, side, gaps, radius, room),
+        lambda room: _uncovered(
+            reached.words, nodes, first, side, beside, n_beside, gaps, radius, room
+        ),
         # most exposed nodes have one arc
         np.empty((2 * len(nodes), 7)),
     )
     return _linked(table[:, :2].astype(np.int64), table[:, 2:4], table[:, 4:6], table[:, 6])
+
+
+def _beside_neighbours(radius: float) -> tuple[FloatArray, IntArray]:
+    """What every choice of neighbours leaves of a circle, see `_cut_by_neighbours`."""
+    n_gaps = np.empty(2**N_AROUND, dtype=np.int64)
+    gaps = np.empty((n_gaps.size, N_GAPS, 6))
+    _cut_by_neighbours(gaps, n_gaps, radius)
+    return gaps, n_gaps
 
 
 def _exposed(reached: Nodes) -> Nodes:
@@ -217,15 +234,40 @@ def _cover(
                 set_bits(covered[iy], left, right)
 
 
+@kernel("void(float64[:, :, :], int64[:], float64)")
+def _cut_by_neighbours(gaps: FloatArray, n_gaps: IntArray, radius: float) -> None:
+    """Write what every choice of neighbours, numbered as `_around` does, leaves of a circle.
+
+    The 4 would do; with the diagonal ones less is left to look for.
+
+    Args:
+        gaps: Room for `N_GAPS` gaps of each choice.
+        n_gaps: Room for how many there are.
+        radius: ρ.
+    """
+    for choice in range(n_gaps.size):
+        left = gaps[choice]
+        # a circle that meets no other begins and ends at its left
+        _set_end(left[0], BEGIN, -math.pi, -radius, 0.0)
+        _set_end(left[0], END, math.pi, -radius, 0.0)
+        n = 1
+        for place in range(N_AROUND):
+            if choice >> place & 1:
+                n = _cut(left, n, place % 3 - 1, place // 3 - 1, radius)
+        n_gaps[choice] = n
+
+
 @kernel(
-    "int64(const uint64[:, :], const int64[:, :], const int64[:, :], int64, float64[:, :, :], "
-    "float64, float64[:, :])"
+    "int64(const uint64[:, :], const int64[:, :], const int64[:, :], int64, "
+    "const float64[:, :, :], const int64[:], float64[:, :], float64, float64[:, :])"
 )
 def _uncovered(
     reached: Words,
     nodes: IntArray,
     first: IntArray,
     side: int,
+    beside: FloatArray,
+    n_beside: IntArray,
     gaps: FloatArray,
     radius: float,
     arcs: FloatArray,
@@ -237,7 +279,9 @@ def _uncovered(
         nodes: The exposed nodes, see `_sorted`.
         first: Where those of each square begin.
         side: Of a square.
-        gaps: Room for the gaps of one circle, see `BEGIN`, and for those it had before.
+        beside: The gaps that every choice of neighbours leaves, see `_cut_by_neighbours`.
+        n_beside: How many these are.
+        gaps: Room for what exposed nodes leave of one of them.
         radius: ρ.
         arcs: Room for 7 numbers an arc: x and y of the node, of the arc's begin and of its end,
             and the arc's angle.
@@ -245,64 +289,53 @@ def _uncovered(
     n_arcs = 0
     for k in range(nodes.shape[0]):
         x, y = nodes[k, 0], nodes[k, 1]
-        n = _cut_by_neighbours(gaps[0], reached, x, y, radius)
-        n = _cut_by_exposed(gaps[0], n, gaps[1], nodes, first, side, x, y, radius)
-        for gap in range(n):
-            n_arcs = _append_arcs(arcs, n_arcs, gaps[0, gap], float(x), float(y), radius)
+        choice = _around(reached, x, y)
+        for gap in range(n_beside[choice]):
+            _copy(beside[choice, gap], gaps[0])
+            n = _cut_by_exposed(gaps, nodes, first, side, x, y, radius)
+            for left in range(n):
+                n_arcs = _append_arcs(arcs, n_arcs, gaps[left], float(x), float(y), radius)
     return n_arcs
 
 
 @helper
-def _cut_by_neighbours(gaps: FloatArray, reached: Words, x: int, y: int, radius: float) -> int:
-    """Write what the 8 neighbours leave of the circle about (x, y), and return how many gaps.
-
-    The 4 would do; with the diagonal ones less is left to look for.
-    """
-    _set_end(gaps[0], BEGIN, -math.pi, 0, 0)
-    _set_end(gaps[0], END, math.pi, 0, 0)
-    n = 1
+def _around(reached: Words, x: int, y: int) -> int:
+    """Which nodes of the square around a node are reached: a bit each, row by row from the left."""
+    choice = 0
     for iy in range(max(0, y - 1), min(reached.shape[0], y + 2)):
         # bits beyond the last column are clear
         for ix in range(max(0, x - 1), min(64 * reached.shape[1], x + 2)):
             if reached[iy, ix >> 6] >> np.uint64(ix & 63) & np.uint64(1):
-                n = _cut(gaps, n, ix - x, iy - y, radius)
-    return n
+                choice |= 1 << (iy - y + 1) * 3 + ix - x + 1
+    return choice
 
 
 @helper
 def _cut_by_exposed(
-    gaps: FloatArray,
-    n: int,
-    before: FloatArray,
-    nodes: IntArray,
-    first: IntArray,
-    side: int,
-    x: int,
-    y: int,
-    radius: float,
+    gaps: FloatArray, nodes: IntArray, first: IntArray, side: int, x: int, y: int, radius: float
 ) -> int:
-    """Write what the exposed nodes leave of n gaps in the circle about (x, y); return how many.
+    """Write what the exposed nodes leave of a gap in the circle about (x, y); return how many.
 
     A disc meets a gap when its centre is within ρ of some point of it, so within
     ρ + 2ρ·sin(angle / 4) of its middle. For the gap of a straight wall that is little over ρ,
     and hardly any node that is not a neighbour comes so close.
     """
-    for k in range(n):
-        _copy(gaps[k], before[k])
-    for k in range(n):
-        begin_rad, end_rad = before[k, BEGIN], before[k, END]
-        middle_rad = (begin_rad + end_rad) / 2
-        middle_x, middle_y = radius * math.cos(middle_rad), radius * math.sin(middle_rad)
-        reach = radius * (1 + 2 * math.sin((end_rad - begin_rad) / 4))
-        # where discs touch, the centre of one lies on the rim of this reach
-        square = reach * reach * (1 + TIE)
-        low, high = _squares(y + middle_y, reach, side, first.shape[0])
-        begin, end = _squares(x + middle_x, reach, side, first.shape[1] - 1)
-        for row in range(low, high):
-            for node in range(first[row, begin], first[row, end]):
-                dx, dy = nodes[node, 0] - x, nodes[node, 1] - y
-                if n and (dx - middle_x) ** 2 + (dy - middle_y) ** 2 <= square:
-                    n = _cut(gaps, n, dx, dy, radius)
+    begin_rad, end_rad = gaps[0, BEGIN], gaps[0, END]
+    middle_rad = (begin_rad + end_rad) / 2
+    middle_x, middle_y = x + radius * math.cos(middle_rad), y + radius * math.sin(middle_rad)
+    reach = radius * (1 + 2 * math.sin((end_rad - begin_rad) / 4))
+    # where discs touch, the centre of one lies on the rim of this reach
+    square = reach * reach * (1 + TIE)
+    low, high = _squares(middle_y, reach, side, first.shape[0])
+    begin, end = _squares(middle_x, reach, side, first.shape[1] - 1)
+    n = 1
+    for row in range(low, high):
+        for node in range(first[row, begin], first[row, end]):
+            node_x, node_y = nodes[node, 0], nodes[node, 1]
+            if (node_x - middle_x) ** 2 + (node_y - middle_y) ** 2 <= square:
+                n = _cut(gaps, n, node_x - x, node_y - y, radius)
+                if n == 0:
+                    return 0
     return n
 
 
@@ -319,42 +352,74 @@ def _cut(gaps: FloatArray, n: int, dx: int, dy: int, radius: float) -> int:
 
     A disc that only touches covers nothing, but parts the gap at the point it touches.
     """
-    spread = _spread(dx, dy, radius)
-    if spread < 0:
-        return n
-    half_rad = math.atan(spread)
-    covers_rad = math.atan2(dy, dx) - half_rad
-    if n == 1 and gaps[0, OPENER] == gaps[0, OPENER + 1] == 0:
-        _set_end(gaps[0], BEGIN, covers_rad + 2 * half_rad, dx, dy)
-        _set_end(gaps[0], END, covers_rad + TURN, dx, dy)
-        return 1
     # backwards, so that the gaps this makes, at the end, are not looked at again
     for k in range(n - 1, -1, -1):
-        gap = gaps[k]
-        begin_rad, end_rad = gap[BEGIN], gap[END]
-        enters_rad = begin_rad + (covers_rad - begin_rad) % TURN
-        leaves_rad = enters_rad + 2 * half_rad
-        if leaves_rad + NOISE_RAD < end_rad:
-            _copy(gap, gaps[n])
-            _set_end(gaps[n], BEGIN, leaves_rad, dx, dy)
-            n += 1
-        if enters_rad < end_rad:
-            _set_end(gap, END, enters_rad, dx, dy)
-        # the end of what the disc covers may come round to the gap's begin
-        if leaves_rad - TURN > begin_rad:
-            _set_end(gap, BEGIN, leaves_rad - TURN, dx, dy)
-        if gap[BEGIN] + NOISE_RAD >= gap[END]:
-            n -= 1
-            _copy(gaps[n], gap)
+        if _may_meet(gaps[k], dx, dy, radius):
+            n = _cut_one(gaps, n, k, dx, dy, radius)
     return n
 
 
 @helper
-def _set_end(gap: FloatArray, end: int, direction_rad: float, dx: int, dy: int) -> None:
-    """Let a gap begin (`BEGIN`) or end (`END`) in a direction, because of the disc at (dx, dy)."""
+def _may_meet(gap: FloatArray, dx: int, dy: int, radius: float) -> bool:
+    """Whether the disc at (dx, dy) could meet a gap.
+
+    If it does, it holds an end of the gap, or lies in a direction between the ends; for gaps of
+    more than half a circle nothing is said about directions.
+    """
+    begin_x, begin_y = gap[BEGIN_AT], gap[BEGIN_AT + 1]
+    end_x, end_y = gap[END_AT], gap[END_AT + 1]
+    # discs that pass through an end are the rule
+    square = radius * radius * (1 + TIE)
+    return (
+        (dx - begin_x) ** 2 + (dy - begin_y) ** 2 <= square
+        or (dx - end_x) ** 2 + (dy - end_y) ** 2 <= square
+        or (begin_x * dy >= begin_y * dx and end_y * dx >= end_x * dy)
+        or gap[END] - gap[BEGIN] > math.pi
+    )
+
+
+@helper
+def _cut_one(gaps: FloatArray, n: int, k: int, dx: int, dy: int, radius: float) -> int:
+    """Take what the open disc at (dx, dy) covers out of gap k of n; return how many there are."""
+    spread = _spread(dx, dy, radius)
+    if spread < 0:
+        return n
+    gap = gaps[k]
+    half_rad = math.atan(spread)
+    covers_rad = math.atan2(dy, dx) - half_rad
+    # from the integers, not from the angle: so the ends along a straight wall lie on a straight
+    # line to the last bit
+    enters_x, enters_y = (dx + dy * spread) / 2, (dy - dx * spread) / 2
+    leaves_x, leaves_y = (dx - dy * spread) / 2, (dy + dx * spread) / 2
+    begin_rad, end_rad = gap[BEGIN], gap[END]
+    if begin_rad == -math.pi and end_rad == math.pi:
+        # the whole circle: it has no ends yet
+        _set_end(gap, BEGIN, covers_rad + 2 * half_rad, leaves_x, leaves_y)
+        _set_end(gap, END, covers_rad + TURN, enters_x, enters_y)
+        return n
+    enters_rad = begin_rad + (covers_rad - begin_rad) % TURN
+    leaves_rad = enters_rad + 2 * half_rad
+    if leaves_rad + NOISE_RAD < end_rad:
+        _copy(gap, gaps[n])
+        _set_end(gaps[n], BEGIN, leaves_rad, leaves_x, leaves_y)
+        n += 1
+    if enters_rad < end_rad:
+        _set_end(gap, END, enters_rad, enters_x, enters_y)
+    # the end of what the disc covers may come round to the gap's begin
+    if leaves_rad - TURN > begin_rad:
+        _set_end(gap, BEGIN, leaves_rad - TURN, leaves_x, leaves_y)
+    if gap[BEGIN] + NOISE_RAD >= gap[END]:
+        n -= 1
+        _copy(gaps[n], gap)
+    return n
+
+
+@helper
+def _set_end(gap: FloatArray, end: int, direction_rad: float, x: float, y: float) -> None:
+    """Let a gap begin (`BEGIN`) or end (`END`) in a direction, at (x, y) from the node."""
     gap[end] = direction_rad
-    gap[OPENER + 2 * end] = dx
-    gap[OPENER + 2 * end + 1] = dy
+    gap[BEGIN_AT + 2 * end] = x
+    gap[BEGIN_AT + 2 * end + 1] = y
 
 
 @helper
@@ -372,15 +437,15 @@ def _append_arcs(
 
     Returns how many there are then.
     """
-    begin_x, begin_y = _crossing(gap[OPENER], gap[OPENER + 1], 1, radius)
-    end_x, end_y = _crossing(gap[CLOSER], gap[CLOSER + 1], -1, radius)
+    begin_x, begin_y = x + gap[BEGIN_AT], y + gap[BEGIN_AT + 1]
+    end_x, end_y = x + gap[END_AT], y + gap[END_AT + 1]
     span_rad = gap[END] - gap[BEGIN]
     if span_rad <= math.pi:
-        return _put(arcs, n, (x, y, x + begin_x, y + begin_y, x + end_x, y + end_y, span_rad))
+        return _put(arcs, n, (x, y, begin_x, begin_y, end_x, end_y, span_rad))
     middle_rad = gap[BEGIN] + span_rad / 2
     middle_x, middle_y = x + radius * math.cos(middle_rad), y + radius * math.sin(middle_rad)
-    n = _put(arcs, n, (x, y, x + begin_x, y + begin_y, middle_x, middle_y, span_rad / 2))
-    return _put(arcs, n, (x, y, middle_x, middle_y, x + end_x, y + end_y, span_rad / 2))
+    n = _put(arcs, n, (x, y, begin_x, begin_y, middle_x, middle_y, span_rad / 2))
+    return _put(arcs, n, (x, y, middle_x, middle_y, end_x, end_y, span_rad / 2))
 
 
 @helper
@@ -390,19 +455,6 @@ def _put(arcs: FloatArray, n: int, arc: tuple[float, ...]) -> int:
         for column in range(7):
             arcs[n, column] = arc[column]
     return n + 1
-
-
-@helper
-def _crossing(dx: float, dy: float, side: int, radius: float) -> tuple[float, float]:
-    """Where the circle about (dx, dy) meets that about (0, 0): on its left for side 1, else -1.
-
-    From the integers, not from the angle: so the crossings along a straight wall lie on a
-    straight line to the last bit. A circle that meets no other begins and ends at its left.
-    """
-    if dx == 0 and dy == 0:
-        return -radius, 0.0
-    across = side * _spread(dx, dy, radius)
-    return (dx - dy * across) / 2, (dy + dx * across) / 2
 
 
 @helper
