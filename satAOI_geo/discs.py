@@ -370,12 +370,13 @@ def _may_meet(gap: FloatArray, dx: int, dy: int, radius: float) -> bool:
     end_x, end_y = gap[END_AT], gap[END_AT + 1]
     # discs that pass through an end are the rule
     square = radius * radius * (1 + TIE)
-    return (
+    may_meet: bool = (
         (dx - begin_x) ** 2 + (dy - begin_y) ** 2 <= square
         or (dx - end_x) ** 2 + (dy - end_y) ** 2 <= square
         or (begin_x * dy >= begin_y * dx and end_y * dx >= end_x * dy)
         or gap[END] - gap[BEGIN] > math.pi
     )
+    return may_meet
 
 
 @helper
