@@ -3,7 +3,6 @@
 import contextlib
 import json
 import os
-import secrets
 import shutil
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict
@@ -32,7 +31,7 @@ def written_whole(path: Path, *, never_over: Iterable[Path] = ()) -> Iterator[Bi
             exist, or the file cannot be written.
     """
     refuse_unfit_target(path, never_over)
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")
+    temporary = path.with_name(f".{path.name}.{os.urandom(4).hex()}.tmp")
     try:
         with temporary.open("xb") as stream:
             yield stream

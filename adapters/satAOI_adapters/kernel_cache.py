@@ -4,7 +4,6 @@ import atexit
 import contextlib
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 from importlib import import_module
@@ -36,6 +35,8 @@ def compile_beside() -> None:
 
     Numba compiles one kernel at a time in a process; what the other has compiled is loaded.
     """
+    import subprocess
+
     command = [sys.executable, "-c", f"from {__name__} import compile_all; compile_all()"]
     silent = subprocess.DEVNULL
     own = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
