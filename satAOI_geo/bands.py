@@ -125,10 +125,9 @@ def explored(task: BandTask, watch: Stopwatch | None = None) -> Explored:
     watch = watch or Stopwatch()
     with watch.stage("free space") as share:
         space = free_space(task.engine, task.robot, task.lattice, share)
-        n_states = space.n_states(slice(task.n_own))
     with watch.stage("reach") as share:
         band = Band.of(task.engine, task.robot, space, share)
-    return Explored(space.free_nodes(), n_states, band)
+    return Explored(space.free_nodes(), band.runs.n_states(task.n_own), band)
 
 
 def _in_turn(tasks: Sequence[BandTask], watch: Stopwatch) -> Iterator[tuple[int, Explored]]:

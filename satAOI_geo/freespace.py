@@ -26,13 +26,13 @@ class FreeSpace:
     Attributes:
         lattice: Nodes and directions.
         words: Shape (n_directions, n_swings, n_rows, n_words); a bit is set where the pose is free.
-        barred: barred[a1][swing] are the steps from a free node to a free neighbour that something
-            between the two bars, shape (n, 3), see `Engine.block`.
+        barred: For each direction the steps from a free node to a free neighbour that something
+            between the two bars, shape (n, 4): a swing number, and what `Engine.block` tells.
     """
 
     lattice: Lattice
     words: Words
-    barred: tuple[tuple[IntArray, ...], ...]
+    barred: tuple[IntArray, ...]
 
     def is_free(self, iy: int, ix: int, a1: int, swing: int) -> bool:
         """Whether one pose is free at a node."""
@@ -42,16 +42,14 @@ class FreeSpace:
         """Nodes at which some pose is free."""
         return Nodes(np.bitwise_or.reduce(self.words, axis=(0, 1)), self.lattice.n_columns)
 
-    def steps(self, a1: int, swing: int, *, rows_up: int) -> Words:
-        """Nodes from which the disc may step up (rows_up 1) or right (0), the pose kept."""
-        free = self.words[a1, swing]
-        steps: Words = np.empty_like(free)
-        _steps(free, self.barred[a1][swing], rows_up, steps)
-        return steps
+    def steps(self, a1: int, *, rows_up: int) -> Words:
+        """Nodes from which the disc may step up (rows_up 1) or right (0), the pose kept.
 
-    def n_states(self, rows: slice = slice(None)) -> int:
-        """How many (node, pose) pairs are free in some rows."""
-        return int(np.bitwise_count(self.words[:, :, rows]).sum())
+        Shape (n_swings, n_rows, n_words).
+        """
+        steps: Words = np.empty_like(self.words[a1])
+        _steps(self.words[a1], self.barred[a1], rows_up, steps)
+        return steps
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,16 +92,18 @@ def free_space(
     words = np.empty((lattice.n_directions, n_swings, lattice.n_rows, n_words), dtype=np.uint64)
     directions = lattice.directions()
 
-    def fill(a1: int) -> tuple[IntArray, ...]:
+    def fill(a1: int) -> IntArray:
         capsule = lattice.no_nodes()
         of_capsule = engine.block(capsule, robot.capsule(directions[a1]))
         words[a1] = capsule
         barred = []
         for swing, vehicle in enumerate(_vehicles(robot, lattice, a1)):
             of_vehicle = engine.block(words[a1, swing], vehicle)
-            barred.append(np.concatenate((of_capsule, of_vehicle)))
+            barred += [(swing, of_capsule), (swing, of_vehicle)]
         np.invert(words[a1], out=words[a1])
-        return tuple(barred)
+        return np.concatenate(
+            [np.column_stack((np.full(len(steps), swing), steps)) for swing, steps in barred]
+        )
 
     barred = run_threads(fill, lattice.n_directions, progress)
     return FreeSpace(lattice, words, tuple(barred))
@@ -171,25 +171,25 @@ def run_threads(
     return answers
 
 
-@kernel("void(const uint64[:, :], const int64[:, :], int64, uint64[:, :])")
+@kernel("void(const uint64[:, :, :], const int64[:, :], int64, uint64[:, :, :])")
 def _steps(free: Words, barred: IntArray, rows_up: int, steps: Words) -> None:
-    """Write the nodes from which a step leads to a free neighbour; see `FreeSpace`."""
-    n_rows, n_words = free.shape
-    top = np.uint64(WORD_BITS - 1)
-    for iy in range(n_rows):
-        for word in range(n_words):
-            beyond = np.uint64(0)
-            if rows_up == 0:
-                beyond = free[iy, word] >> np.uint64(1)
-                if word + 1 < n_words:
-                    beyond |= free[iy, word + 1] << top
-            elif iy + 1 < n_rows:
-                beyond = free[iy + 1, word]
-            steps[iy, word] = free[iy, word] & beyond
+    """Write the nodes from which a step leads to a free neighbour; see `FreeSpace.steps`."""
+    n_swings, n_rows, n_words = free.shape
+    for swing in range(n_swings):
+        for iy in range(n_rows):
+            row, beyond = free[swing, iy], steps[swing, iy]
+            for word in range(n_words):
+                if rows_up:
+                    beyond[word] = free[swing, iy + 1, word] if iy + 1 < n_rows else np.uint64(0)
+                else:
+                    beyond[word] = row[word] >> np.uint64(1)
+                    if word + 1 < n_words:
+                        beyond[word] |= row[word + 1] << np.uint64(WORD_BITS - 1)
+                beyond[word] &= row[word]
     for k in range(barred.shape[0]):
-        if barred[k, 0] == rows_up:
-            iy, ix = barred[k, 1], barred[k, 2]
-            steps[iy, ix // WORD_BITS] &= ~(np.uint64(1) << np.uint64(ix % WORD_BITS))
+        if barred[k, 1] == rows_up:
+            swing, iy, ix = barred[k, 0], barred[k, 2], barred[k, 3]
+            steps[swing, iy, ix // WORD_BITS] &= ~(np.uint64(1) << np.uint64(ix % WORD_BITS))
 
 
 def _cores() -> int:

@@ -25,7 +25,16 @@ from satAOI_geo.freespace import FreeSpace, Move, moves, run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.robot import Robot
-from satAOI_geo.runs import Int32Array, Meeting, Runs, SliceRuns, roots, rows_of, unite
+from satAOI_geo.runs import (
+    Int32Array,
+    Meeting,
+    Runs,
+    SliceRuns,
+    numbered,
+    rows_of,
+    unite,
+    unite_upwards,
+)
 from satAOI_geo.stretches import Stretches, of_runs
 
 EVERYTHING: Final = slice(None)
@@ -73,7 +82,7 @@ class DiscComponents:
         above = np.arange(below.size) + np.repeat(first - np.cumsum(n_above) + n_above, n_above)
         parents = np.arange(row.size, dtype=np.int32)
         unite(parents, np.column_stack((below, above)).astype(np.int32))
-        labels, n_sets = _numbered(parents)
+        labels, n_sets = numbered(parents)
         stretches = Stretches.of(labels, row.astype(np.int32), rows.begin, rows.end, n_sets)
         return cls(free.shape, rows, labels, stretches, stretches.boxes())
 
@@ -98,7 +107,7 @@ class Band:
         lattice: The rows, as a band of the whole lattice.
         runs: The states, as runs.
         labels: Shape (n_runs,): number of each run's set.
-        lowest: Shape (n_sets,), see `_lowest_states`.
+        lowest: Shape (n_sets,), see `Runs.lowest_states`.
         stretches: The nodes of each set: label, row of the whole lattice, first and last column;
             nothing once they are gathered from all bands.
         pages: Of the files that the runs are in, if they are.
@@ -121,33 +130,31 @@ class Band:
     ) -> "Band":
         """Join all free states by all moves whose sweep is free."""
         lattice = space.lattice
-        n_swings = len(lattice.swings)
+        n_directions, n_swings, n_rows, n_words = space.words.shape
 
-        def gather(a1: int) -> list[SliceRuns]:
-            return [
-                SliceRuns.of(space.words[a1, swing], space.steps(a1, swing, rows_up=0))
-                for swing in range(n_swings)
-            ]
+        def gather(a1: int) -> SliceRuns:
+            free, right = space.words[a1], space.steps(a1, rows_up=0)
+            return SliceRuns.of(free.reshape(-1, n_words), right.reshape(-1, n_words))
 
         share = _thirds(progress)
-        runs = Runs.joined(run_threads(gather, lattice.n_directions, share[0]))
+        parts = run_threads(gather, n_directions, share[0])
+        runs = Runs.joined(parts, (n_directions, n_swings, n_rows))
         joined = _Joined(engine, runs)
 
         def step_up(a1: int) -> None:
-            for swing in range(n_swings):
-                joined.by_steps_up(space, a1, swing)
+            # no other direction has these runs, so threads need not wait for each other
+            unite_upwards(joined.parents, runs, a1, space.steps(a1, rows_up=1))
 
         def move(a1: int) -> None:
             for each in moves(engine, robot, space, a1):
                 joined.by_move(each)
 
-        run_threads(step_up, lattice.n_directions, share[1])
-        run_threads(move, lattice.n_directions, share[2])
-        labels, n_sets = _numbered(joined.parents)
-        row = runs.rows() + np.int32(lattice.first_row)
+        run_threads(step_up, n_directions, share[1])
+        run_threads(move, n_directions, share[2])
+        labels, n_sets = numbered(joined.parents)
         label, iy, begin, end = of_runs(runs, labels, n_sets)
         stretches = (label, iy + np.int32(lattice.first_row), begin, end)
-        lowest = _lowest_states(lattice, runs, row, labels, n_sets)
+        lowest = runs.lowest_states(labels, n_sets, lattice)
         return cls(lattice, runs, labels, lowest, stretches)
 
     def aside(self) -> "Band":
@@ -214,7 +221,7 @@ class PoseComponents:
             upper = below.on_row(below.lattice.n_rows - 1) + first[k]
             lower = above.on_row(0) + first[k + 1]
             unite(parents, np.column_stack((upper, lower)).astype(np.int32))
-        joined, n_sets = _numbered(parents)
+        joined, n_sets = numbered(parents)
         lowest = np.full(n_sets, np.iinfo(np.int64).max)
         np.minimum.at(lowest, joined, np.concatenate([band.lowest for band in bands]))
         place = np.empty(n_sets, dtype=np.int32)
@@ -265,20 +272,6 @@ class PoseComponents:
         return sets
 
 
-def _lowest_states(
-    lattice: Lattice, runs: Runs, row: Int32Array, labels: Int32Array, n_sets: int
-) -> npt.NDArray[np.int64]:
-    """For each set a number that puts its states in the order of row, pose and column.
-
-    It is that of the first of them, and the same however the lattice is cut into bands.
-    """
-    n_poses = lattice.n_directions * len(lattice.swings)
-    line = row.astype(np.int64) * n_poses + runs.poses()
-    lowest = np.full(n_sets, np.iinfo(np.int64).max)
-    np.minimum.at(lowest, labels, line * lattice.n_columns + runs.begin)
-    return lowest
-
-
 def _in_file(values: Int32Array) -> tuple[Int32Array, mmap.mmap | None]:
     """The values in a file without a name, which is gone with the last array that shows it."""
     if not values.size:
@@ -295,13 +288,6 @@ def _ranges(shape: tuple[int, int], rows: slice, columns: slice) -> tuple[range,
     return range(*rows.indices(shape[0])), range(*columns.indices(shape[1]))
 
 
-def _numbered(parents: npt.NDArray[np.int32]) -> tuple[npt.NDArray[np.int32], int]:
-    """The component of each member of a forest, in the order of their roots; how many there are."""
-    root = roots(parents)
-    is_root = root == np.arange(root.size)
-    return (np.cumsum(is_root, dtype=np.int32) - 1)[root], int(np.count_nonzero(is_root))
-
-
 class _Joined:
     """Runs being joined into components, by several threads at once."""
 
@@ -310,14 +296,6 @@ class _Joined:
         self._engine = engine
         self._runs = runs
         self._one_at_a_time = Lock()
-
-    def by_steps_up(self, space: FreeSpace, a1: int, swing: int) -> None:
-        """Join the runs of a pose that steps from row to row lead between.
-
-        No other pose has these runs, so other threads may do the same for theirs.
-        """
-        allowed = space.steps(a1, swing, rows_up=1)
-        unite(self.parents, Meeting.upwards(self._runs, (a1, swing)).links(allowed))
 
     def by_move(self, move: Move) -> None:
         """Join the runs of two poses that a move leads between.

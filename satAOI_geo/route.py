@@ -160,8 +160,8 @@ class RouteMap:
         def gather(a1: int) -> npt.NDArray[np.int32]:
             runs = self._band.runs
             pairs = [
-                Meeting.upwards(runs, (a1, swing)).links(space.steps(a1, swing, rows_up=1))
-                for swing in range(len(found.lattice.swings))
+                Meeting.upwards(runs, (a1, swing)).links(allowed)
+                for swing, allowed in enumerate(space.steps(a1, rows_up=1))
             ]
             for move in moves(found.engine, found.robot, space, a1):
                 ends = (move.a1, move.swing), (move.to_a1, move.to_swing)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from satAOI_geo.intervals import set_bits
 from satAOI_geo.kernels import helper, kernel
-from satAOI_geo.lattice import Words
+from satAOI_geo.lattice import Lattice, Words
 from satAOI_geo.nodes import Nodes, from_right
 from satAOI_geo.plan import IntArray
 
@@ -35,16 +35,20 @@ class Runs:
     end: Int32Array
 
     @classmethod
-    def joined(cls, slices: list[list["SliceRuns"]]) -> "Runs":
-        """The runs of all poses, given as slices[a1][swing]."""
-        flat = [one for row in slices for one in row]
-        offsets = np.cumsum([0, *(one.begin.size for one in flat)])
-        firsts = np.array([one.first for one in flat])
-        first = firsts + offsets[:-1, np.newaxis]
+    def joined(cls, parts: list["SliceRuns"], shape: tuple[int, int, int]) -> "Runs":
+        """The runs of all rows, given part by part, with (n_directions, n_swings, n_rows)."""
+        n_directions, n_swings, n_rows = shape
+        offsets = np.cumsum([0, *(part.begin.size for part in parts)])
+        of_rows = [
+            part.first[:-1] + offset for part, offset in zip(parts, offsets[:-1], strict=True)
+        ]
+        first = np.concatenate([*of_rows, offsets[-1:]])
+        # each pose ends where the next one begins
+        places = n_rows * np.arange(n_directions * n_swings)[:, np.newaxis] + np.arange(n_rows + 1)
         return cls(
-            first.reshape(len(slices), len(slices[0]), -1),
-            np.concatenate([one.begin for one in flat]),
-            np.concatenate([one.end for one in flat]),
+            first[places].reshape(n_directions, n_swings, n_rows + 1),
+            np.concatenate([part.begin for part in parts]),
+            np.concatenate([part.end for part in parts]),
         )
 
     def rows(self) -> Int32Array:
@@ -53,10 +57,20 @@ class Runs:
         rows = np.tile(np.arange(n_ends - 1, dtype=np.int32), n_directions * n_swings)
         return np.repeat(rows, np.diff(self.first, axis=2).ravel())
 
-    def poses(self) -> Int32Array:
-        """Pose of each run, a1 · n_swings + swing, shape (n_runs,)."""
-        counts = (self.first[..., -1] - self.first[..., 0]).ravel()
-        return np.repeat(np.arange(counts.size, dtype=np.int32), counts)
+    def n_states(self, n_rows: int) -> int:
+        """How many nodes the runs of the first n_rows rows hold at all poses."""
+        before = np.concatenate(([0], np.cumsum(self.end.astype(np.int64) - self.begin + 1)))
+        return int((before[self.first[..., n_rows]] - before[self.first[..., 0]]).sum())
+
+    def lowest_states(self, labels: Int32Array, n_sets: int, lattice: Lattice) -> IntArray:
+        """For each set of runs, numbered by `labels`, a number that puts sets in order.
+
+        It is that of the set's first state by row, pose and column, and the same however a lattice
+        is cut into bands.
+        """
+        lowest = np.full(n_sets, np.iinfo(np.int64).max)
+        _lowest_states(self.first, self.begin, labels, lattice.first_row, lattice.n_columns, lowest)
+        return lowest
 
     def holding(self, iy: int, ix: int) -> IntArray:
         """The run that holds each pose at a node, or -1; shape (n_directions, n_swings)."""
@@ -67,7 +81,7 @@ class Runs:
 
 @dataclass(frozen=True, slots=True)
 class SliceRuns:
-    """The runs of one pose: `first` has shape (n_rows + 1,)."""
+    """The runs of some rows, those of one pose or of several: `first` has shape (n_rows + 1,)."""
 
     first: IntArray
     begin: Int32Array
@@ -75,7 +89,7 @@ class SliceRuns:
 
     @classmethod
     def of(cls, free: Words, right: Words) -> "SliceRuns":
-        """The runs from free nodes and the steps to the right among them."""
+        """The runs from free nodes and the steps to the right among them, (n_rows, n_words)."""
         first = np.zeros(free.shape[0] + 1, dtype=np.int64)
         _count_runs(free, right, first)
         np.cumsum(first, out=first)
@@ -137,6 +151,24 @@ def rows_of(nodes: Nodes) -> SliceRuns:
 def unite(parents: Int32Array, pairs: Int32Array) -> None:
     """Join pairs, the first two columns of (n, 2 or 3), in the forest `parents`, shape (m,)."""
     _unite(parents, pairs)
+
+
+def unite_upwards(parents: Int32Array, runs: Runs, a1: int, allowed: Words) -> None:
+    """Join the runs of a direction's poses that steps from row to row lead between.
+
+    Args:
+        parents: The forest, shape (n_runs,). Only what belongs to these runs is read and changed.
+        runs: All runs.
+        a1: The direction.
+        allowed: Shape (n_swings, n_rows, n_words), the nodes from which the disc may step up.
+    """
+    _unite_upwards(parents, allowed, runs.first[a1], runs.end)
+
+
+def numbered(parents: Int32Array) -> tuple[Int32Array, int]:
+    """The component of each member of a forest, in the order of their roots; how many there are."""
+    labels = np.empty_like(parents)
+    return labels, _number(parents, labels)
 
 
 def roots(parents: Int32Array) -> Int32Array:
@@ -241,15 +273,38 @@ def _found(parents: Int32Array, run: int) -> int:
     return run
 
 
+@kernel("void(int32[:], const uint64[:, :, :], const int64[:, :], const int32[:])")
+def _unite_upwards(parents: Int32Array, allowed: Words, first: IntArray, end: Int32Array) -> None:
+    """Join every two runs that an allowed step up leads between; see `_links`."""
+    for swing in range(allowed.shape[0]):
+        for iy in range(allowed.shape[1] - 1):
+            row = allowed[swing, iy]
+            a, b = first[swing, iy], first[swing, iy + 1]
+            ix = _next_bit(row, 0)
+            while ix >= 0:
+                while end[a] < ix:
+                    a += 1
+                while end[b] < ix:
+                    b += 1
+                _unite_two(parents, a, b)
+                ix = _next_bit(row, min(end[a], end[b]) + 1)
+
+
 @kernel("void(int32[:], const int32[:, :])")
 def _unite(parents: Int32Array, pairs: Int32Array) -> None:
-    """Hang the higher of two roots below the lower, pair by pair."""
+    """Join pair by pair."""
     for k in range(pairs.shape[0]):
-        root_a, root_b = _root(parents, pairs[k, 0]), _root(parents, pairs[k, 1])
-        if root_a < root_b:
-            parents[root_b] = root_a
-        else:
-            parents[root_a] = root_b
+        _unite_two(parents, pairs[k, 0], pairs[k, 1])
+
+
+@helper
+def _unite_two(parents: Int32Array, a: int, b: int) -> None:
+    """Hang the higher of two roots below the lower."""
+    root_a, root_b = _root(parents, a), _root(parents, b)
+    if root_a < root_b:
+        parents[root_b] = root_a
+    else:
+        parents[root_a] = root_b
 
 
 @helper
@@ -261,11 +316,53 @@ def _root(parents: Int32Array, run: int) -> int:
     return run
 
 
+@kernel("int64(const int32[:], int32[:])")
+def _number(parents: Int32Array, labels: Int32Array) -> int:
+    """Write the number of each one's component; how many there are. Parents come first."""
+    n = 0
+    for run in range(parents.size):
+        if parents[run] == run:
+            labels[run] = n
+            n += 1
+        else:
+            labels[run] = labels[parents[run]]
+    return n
+
+
 @kernel("void(int32[:])")
 def _flatten(parents: Int32Array) -> None:
     """Make every run point at its root; roots are the lowest of their component."""
     for run in range(parents.size):
         parents[run] = parents[parents[run]]
+
+
+@kernel("void(const int64[:, :, :], const int32[:], const int32[:], int64, int64, int64[:])")
+def _lowest_states(
+    first: IntArray,
+    begin: Int32Array,
+    labels: Int32Array,
+    first_row: int,
+    n_columns: int,
+    lowest: IntArray,
+) -> None:
+    """Write the numbers of the first states of sets; see `Runs.lowest_states`.
+
+    Args:
+        first: Shape (n_directions, n_swings, n_rows + 1), see `Runs`.
+        begin: First column of each run.
+        labels: Its set.
+        first_row: Of the whole lattice.
+        n_columns: Of the lattice.
+        lowest: The number of each set, at first beyond all numbers.
+    """
+    n_directions, n_swings, n_ends = first.shape
+    for a1 in range(n_directions):
+        for swing in range(n_swings):
+            for iy in range(n_ends - 1):
+                line = ((first_row + iy) * n_directions + a1) * n_swings + swing
+                for run in range(first[a1, swing, iy], first[a1, swing, iy + 1]):
+                    number = line * n_columns + begin[run]
+                    lowest[labels[run]] = min(lowest[labels[run]], number)
 
 
 @kernel("void(const int64[:, :, :], const int32[:], const int32[:], int64, int64, int64[:, :])")

@@ -52,7 +52,8 @@ def stretches(free: BoolArray, right: BoolArray) -> list[Stretch]:
 
 def runs_of(*drawn: tuple[BoolArray, BoolArray]) -> Runs:
     """The runs of one direction whose swings are these slices."""
-    return Runs.joined([[SliceRuns.of(bits(free), bits(right)) for free, right in drawn]])
+    parts = [SliceRuns.of(bits(free), bits(right)) for free, right in drawn]
+    return Runs.joined(parts, (1, len(parts), len(drawn[0][0])))
 
 
 def listed(runs: Runs) -> list[Stretch]:

@@ -15,7 +15,7 @@ N_ROWS = 3
 def drawn_runs(rng: np.random.Generator, n_columns: int, n_poses: int) -> Runs:
     """Runs of random nodes."""
     slices = [rows_of(Nodes.of(rng.random((N_ROWS, n_columns)) < 0.6)) for _ in range(n_poses)]
-    return Runs.joined([slices])
+    return Runs.joined(slices, (1, n_poses, N_ROWS))
 
 
 @given(
@@ -41,7 +41,8 @@ def test_runs_that_meet_or_overlap_are_one_stretch_in_their_set_only() -> None:
         first, column = np.array([0, 1]), np.array([begin], dtype=np.int32)
         return SliceRuns(first, column, np.array([end], dtype=np.int32))
 
-    runs = Runs.joined([[pose(10, 20), pose(21, 63), pose(65, 70), pose(15, 30)]])
+    poses = [pose(10, 20), pose(21, 63), pose(65, 70), pose(15, 30)]
+    runs = Runs.joined(poses, (1, 4, 1))
     labels = np.array([1, 1, 1, 0], dtype=np.int32)
     stretches = np.column_stack(of_runs(runs, labels, 2))
     assert stretches.tolist() == [[0, 0, 15, 30], [1, 0, 10, 63], [1, 0, 65, 70]]
@@ -50,5 +51,7 @@ def test_runs_that_meet_or_overlap_are_one_stretch_in_their_set_only() -> None:
 @pytest.mark.parametrize("n_poses", [1, 3])
 def test_no_runs_have_no_stretches(n_poses: int) -> None:
     none = rows_of(Nodes.of(np.zeros((N_ROWS, 70), dtype=np.bool_)))
-    found = of_runs(Runs.joined([[none] * n_poses]), np.empty(0, dtype=np.int32), 0)
+    found = of_runs(
+        Runs.joined([none] * n_poses, (1, n_poses, N_ROWS)), np.empty(0, dtype=np.int32), 0
+    )
     assert [column.size for column in found] == [0, 0, 0, 0]
