@@ -13,11 +13,12 @@ these are found. Calls that LLVM puts in by itself are to functions it has found
 """
 
 import ctypes
+import os
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import version
+from importlib.util import find_spec
 from typing import Any, Final
 
 import llvmlite.binding as llvm
@@ -137,10 +138,10 @@ class Compiled:
 @cache
 def machine() -> str:
     """What machine code depends on besides its source: versions and the processor."""
-    versions = [f"{name} {version(name)}" for name in ("numba", "llvmlite")]
+    releases = [_release("numba"), _release("llvmlite")]
     python = sys.implementation.cache_tag
     processor = [llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()]
-    return "\n".join([*versions, python, llvm.get_process_triple(), *processor])
+    return "\n".join([*releases, python, llvm.get_process_triple(), *processor])
 
 
 def compiled(
@@ -173,6 +174,17 @@ def loaded(name: str, object_file: bytes) -> int | None:
     engine.add_object_file(llvm.ObjectFileRef.from_data(object_file))
     engine.finalize_object()
     return engine.get_function_address(name) or None
+
+
+def _release(package: str) -> str:
+    """Which release of a package is installed: what the folder of its metadata is called.
+
+    `importlib.metadata` knows more, but takes longer to load than all kernels.
+    """
+    spec = find_spec(package)
+    places = spec.submodule_search_locations if spec else None
+    folders = [entry for place in places or () for entry in os.listdir(os.path.dirname(place))]
+    return " ".join(sorted(name for name in folders if name.startswith(f"{package}-")))
 
 
 @cache

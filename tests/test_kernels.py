@@ -5,6 +5,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from ctypes import ArgumentError
+from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 from satAOI_adapters.kernel_cache import compile_all
 from satAOI_geo import kernels
 from satAOI_geo.kernels import KERNELS, N_KEPT, VARIABLE, Kernel, filled, helper, kernel
+from satAOI_geo.machine_code import machine
 from satAOI_geo.plan import FloatArray, IntArray
 from tests.command_line import ROOT, drawn_room
 
@@ -108,6 +110,11 @@ def test_machine_code_is_another_for_other_types_and_for_changed_helpers(
     assert not of(total, WEIGHTED.replace("int64)", "int32)")).is_kept()
     monkeypatch.setattr(weighted, "__code__", (lambda value: WEIGHT + value).__code__)
     assert not of(total, WEIGHTED).is_kept()
+
+
+@pytest.mark.parametrize("package", ["numba", "llvmlite"])
+def test_machine_code_is_another_for_another_release_of_what_makes_it(package: str) -> None:
+    assert f"{package}-{version(package)}." in machine()
 
 
 def test_without_a_place_to_write_a_kernel_runs_all_the_same(
