@@ -1,8 +1,8 @@
 """Polygons as few convex pieces: triangles, joined across the diagonals that are not needed.
 
-Hertel and Mehlhorn (1983): take the triangles of a polygon and drop each diagonal whose removal
-leaves the angles at both its ends convex. At most four times as many pieces remain as the best
-division has; a convex polygon becomes one.
+A convex polygon is one piece. Of others Hertel and Mehlhorn (1983) take the triangles and drop each
+diagonal whose removal leaves the angles at both its ends convex. At most four times as many pieces
+remain as the best division has.
 """
 
 import math
@@ -28,6 +28,9 @@ def convex_pieces(polygon: Polygon) -> list[FloatArray]:
     Returns:
         The corners of each piece, shape (n, 2), counter-clockwise, the first not repeated.
     """
+    ring_mm = np.asarray(shapely.orient_polygons(polygon).exterior.coords)[:-1, :2]
+    if not polygon.interiors and _is_convex(ring_mm):
+        return [ring_mm]
     triangles = shapely.orient_polygons(_triangles(polygon))
     rings = [
         [(x, y) for x, y in ring[:3]]
@@ -51,6 +54,14 @@ def convex_pieces(polygon: Polygon) -> list[FloatArray]:
             pieces[a] = merged
             joined_to[b] = a
     return [np.array(pieces[k]) for k, to in enumerate(joined_to) if k == to]
+
+
+def _is_convex(ring_mm: FloatArray) -> bool:
+    """Whether a ring that does not cross itself, counter-clockwise, nowhere bends right."""
+    ahead_mm = np.roll(ring_mm, -1, axis=0) - ring_mm
+    (ax, ay), (bx, by) = ahead_mm.T, np.roll(ahead_mm, -1, axis=0).T
+    bends = ax * by - ay * bx >= -STRAIGHT * np.hypot(ax, ay) * np.hypot(bx, by)
+    return bool(bends.all())
 
 
 def _triangles(polygon: Polygon) -> list[Polygon]:

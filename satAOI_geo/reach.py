@@ -86,13 +86,16 @@ class DiscComponents:
         stretches = Stretches.of(labels, row.astype(np.int32), rows.begin, rows.end, n_sets)
         return cls(free.shape, rows, labels, stretches, stretches.boxes())
 
-    def label_at(self, iy: int, ix: int) -> int:
-        """The set that holds a node, or -1 where no pose is free."""
-        first = int(self.rows.first[iy])
-        ends = self.rows.end[first : self.rows.first[iy + 1]]
-        stretch = first + int(np.searchsorted(ends, ix))
-        is_held = stretch < first + ends.size and self.rows.begin[stretch] <= ix
-        return int(self.labels[stretch]) if is_held else -1
+    def labels_at(self, iy: npt.ArrayLike, ix: npt.ArrayLike) -> npt.NDArray[np.int32]:
+        """The sets that hold some nodes, -1 for those where no pose is free; shape as iy and ix."""
+        width = self.shape[1] + 1
+        row = np.repeat(np.arange(self.shape[0]), np.diff(self.rows.first))
+        # one number that puts row and column in order
+        node = np.asarray(iy, dtype=np.int64) * width + np.asarray(ix)
+        stretch = np.searchsorted(row * width + self.rows.end, node)
+        begins = np.append(row * width + self.rows.begin, np.iinfo(np.int64).max)
+        labels = np.append(self.labels, np.int32(-1))
+        return np.where(begins[stretch] <= node, labels[stretch], np.int32(-1))
 
     def nodes(self, label: int, rows: slice = EVERYTHING, columns: slice = EVERYTHING) -> Nodes:
         """The nodes of one set, of all of the lattice or of a window that holds the set."""

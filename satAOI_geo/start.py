@@ -128,13 +128,12 @@ class StartFinder:
             if found is None:
                 raise self._blocked(mark, node, state)
             label = found
-        return Start(state, mark.source, self.disc.label_at(*node), label, len(labels))
+        return Start(state, mark.source, int(self.disc.labels_at(*node)), label, len(labels))
 
     def largest(self, connectivity: Literal["disc", "pose"]) -> Start:
         """The start that trowels the largest area, by the connectivity that is asked for."""
         lattice, disc_mm = self.pose.lattice, self.robot.disc_radius_mm
-        one_node_each = self.pose.first_nodes()
-        disc_of_pose = np.array([self.disc.label_at(*node) for node in one_node_each.tolist()])
+        disc_of_pose = self.disc.labels_at(*self.pose.first_nodes().T)
         labels = np.arange(disc_of_pose.size)
         if connectivity == "disc":
             best = largest(self.disc, range(len(self.disc.boxes)), lattice, disc_mm)

@@ -151,17 +151,17 @@ def test_disc_connected_set_is_what_algorithm_2_reaches(seed: int) -> None:
     for label in range(len(discs.boxes)):
         nodes = {(int(iy), int(ix)) for iy, ix in np.argwhere(discs.nodes(label).as_array())}
         assert nodes == flooded(min(nodes), lattice.shape, is_free)
-        assert all(discs.label_at(*node) == label for node in nodes)
+        assert all(discs.labels_at(*node) == label for node in nodes)
         covered |= nodes
     blocked = [node for node in np.ndindex(lattice.shape) if node not in covered]
     assert not any(is_free(node) for node in blocked)
-    assert all(discs.label_at(*node) == -1 for node in blocked)
+    assert all(discs.labels_at(*node) == -1 for node in blocked)
 
 
 def test_disc_connected_nodes_touch_at_corners_too() -> None:
     free = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 0], [1, 0, 1]], dtype=bool)
     discs = DiscComponents.of(Nodes.of(free))
-    labels = [[discs.label_at(iy, ix) for ix in range(3)] for iy in range(4)]
+    labels = discs.labels_at(*np.mgrid[:4, :3]).tolist()
     assert labels == [[0, -1, -1], [-1, 0, -1], [-1, -1, -1], [1, -1, 2]]
     assert discs.boxes.tolist() == [[0, 0, 1, 1], [3, 0, 3, 0], [3, 2, 3, 2]]
 
@@ -195,7 +195,7 @@ def test_opening_lets_through_what_fits(
     start, beyond = lattice.nearest_node(1000.0, 2000.0), lattice.nearest_node(7200.0, 2000.0)
     assert start is not None
     assert beyond is not None
-    assert (discs.label_at(*start) == discs.label_at(*beyond)) is disc_passes
+    assert (discs.labels_at(*start) == discs.labels_at(*beyond)).item() is disc_passes
 
     largest = max(poses.at_node(*start), key=lambda label: poses.nodes(label).count())
     assert (largest in poses.at_node(*beyond)) is pose_passes
