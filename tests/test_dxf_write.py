@@ -348,6 +348,42 @@ def test_a_polyline_seen_from_behind_is_bounded_where_it_is_seen() -> None:
     assert entity_bounds(space).tolist() == [[-4, 0, -1, 2]]
 
 
+def test_a_block_is_bounded_wherever_it_stands() -> None:
+    document = ezdxf.new()
+    block = document.blocks.new("DESK", base_point=(1, 0))
+    block.add_lwpolyline([(1, 0), (3, 0), (3, 1), (1, 1)], close=True)
+    block.add_attdef("NUMBER", (99, 99), height=1)
+    document.blocks.new("TWO").add_blockref("DESK", (0, 0))
+    document.blocks.get("TWO").add_blockref("DESK", (10, 0), {"rotation": 90})
+    space = document.modelspace()
+    space.add_blockref("DESK", (5, 5), {"xscale": 2, "yscale": -1})
+    space.add_blockref("TWO", (100, 0))
+    in_a_row = {"column_count": 3, "column_spacing": 4}
+    space.add_blockref("DESK", (0, 20), in_a_row).add_attrib("NUMBER", "7", (0, 30))
+    found = entity_bounds(space)
+    assert found[found[:, 1] < 25] == pytest.approx(
+        np.array(
+            [
+                (5, 4, 9, 5),
+                (100, 0, 110, 2),
+                *((0, 20, 2, 21), (4, 20, 6, 21), (8, 20, 10, 21)),
+            ]
+        )
+    )
+    # the number on each desk of the row
+    assert found[found[:, 1] > 25].shape == (3, 4)
+
+
+def test_a_block_that_holds_itself_is_bounded_by_what_else_it_holds() -> None:
+    document = ezdxf.new()
+    block = document.blocks.new("ENDLESS")
+    block.add_line((0, 0), (2, 1))
+    block.add_blockref("ENDLESS", (5, 5))
+    space = document.modelspace()
+    space.add_blockref("ENDLESS", (10, 10))
+    assert entity_bounds(space).tolist() == [[10, 10, 12, 11]]
+
+
 def test_letters_are_measured_without_a_font_and_keep_their_own() -> None:
     document = ezdxf.new()
     style = document.styles.add("STAMP", font="arial.ttf")

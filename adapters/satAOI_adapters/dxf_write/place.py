@@ -2,16 +2,16 @@
 
 import contextlib
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import TypeAlias
 
 import numpy as np
 import shapely
 from ezdxf import bbox
 from ezdxf.document import Drawing
-from ezdxf.entities import DXFGraphic, Line, LWPolyline, Polyline
+from ezdxf.entities import AttDef, Dimension, DXFGraphic, Insert, Line, LWPolyline, Polyline
 from ezdxf.fonts.fonts import MONOSPACE
-from ezdxf.layouts import Modelspace
+from ezdxf.layouts import BlockLayout, Modelspace
 from ezdxf.math import Vec3
 
 from satAOI_geo.plan import FloatArray, FloorPlan
@@ -74,36 +74,85 @@ def entity_bounds(space: Modelspace) -> FloatArray:
 
     Letters count as wide as they are high, whatever fonts this machine has.
     """
-    cache = bbox.Cache()
-    found = [np.empty((0, 4))]
     with _letters_of_one_width(space.doc):
-        for entity in space:
+        return _Measure().bounds(space)
+
+
+class _Measure:
+    """Tells bounds; what a block holds is measured once, however often the block is inserted."""
+
+    def __init__(self) -> None:
+        self._corners: dict[str, list[Vec3]] = {}
+
+    def bounds(self, entities: Iterable[DXFGraphic]) -> FloatArray:
+        """Bounds of entities and their pieces, shape (n, 4)."""
+        found = [np.empty((0, 4))]
+        for entity in entities:
             # a damaged entity raises whatever comes to it; what cannot be measured is not drawn
             # either, and there is nothing to avoid
             with contextlib.suppress(Exception):
-                found.append(_bounds_of(entity, cache))
-    return np.concatenate(found)
+                found.append(self._of(entity))
+        return np.concatenate(found)
+
+    def _of(self, entity: DXFGraphic) -> FloatArray:
+        """Bounds of an entity, shape (n, 4), n = 0 where it shows nothing.
+
+        Polylines count in pieces: the box around a site boundary would leave no room at all.
+        """
+        if isinstance(entity, Line):
+            return _of_pieces([entity.dxf.start, entity.dxf.end])
+        if isinstance(entity, LWPolyline) and not entity.has_arc:
+            corners = list(entity.vertices_in_wcs())
+            return _of_pieces(corners + corners[:1] if entity.closed else corners)
+        if isinstance(entity, Insert):
+            return self._of_insert(entity)
+        if isinstance(entity, LWPolyline | Polyline):
+            return self.bounds(entity.virtual_entities())
+        if isinstance(entity, Dimension):
+            return _around(self.bounds(entity.virtual_entities()).reshape(-1, 2))
+        boxes = bbox.multi_recursive([entity], fast=True)
+        return _around(_flat(at for box in boxes for at in (box.extmin, box.extmax)))
+
+    def _of_insert(self, insert: Insert) -> FloatArray:
+        """A box around the block at each of its places, and one around each attribute.
+
+        A block that stands askew is given the room of the box around it, askew.
+        """
+        found = []
+        for copy in insert.multi_insert() if insert.mcount > 1 else [insert]:
+            corners = copy.matrix44().transform_vertices(self._corners_of(copy.block()))
+            found += [_around(_flat(corners)), self.bounds(copy.attribs)]
+        return np.concatenate(found)
+
+    def _corners_of(self, block: BlockLayout | None) -> list[Vec3]:
+        """Corners of the box around what a block holds, in its own axes; none where it is empty."""
+        if block is None:
+            return []
+        if block.name not in self._corners:
+            # a damaged block may hold itself
+            self._corners[block.name] = []
+            # what takes the place of these is an attribute of the insert
+            held = (entity for entity in block if not isinstance(entity, AttDef))
+            box = _around(self.bounds(held).reshape(-1, 2))
+            self._corners[block.name] = [Vec3(at) for bounds in box for at in corners_of(bounds)]
+        return self._corners[block.name]
 
 
-def _bounds_of(entity: DXFGraphic, cache: bbox.Cache) -> FloatArray:
-    """Bounds of an entity, shape (n, 4), n = 0 where it shows nothing.
-
-    Polylines count in pieces: the box around a site boundary would leave no room at all.
-    """
-    if isinstance(entity, Line):
-        return _of_pieces([entity.dxf.start, entity.dxf.end])
-    if isinstance(entity, LWPolyline) and not entity.has_arc:
-        corners = list(entity.vertices_in_wcs())
-        return _of_pieces(corners + corners[:1] if entity.closed else corners)
-    pieces = entity.virtual_entities() if isinstance(entity, LWPolyline | Polyline) else [entity]
-    boxes = (bbox.extents([piece], fast=True, cache=cache) for piece in pieces)
-    bounds = [(*box.extmin.vec2, *box.extmax.vec2) for box in boxes if box.has_data]
-    return np.array(bounds, dtype=np.float64).reshape(-1, 4)
+def _around(points: FloatArray) -> FloatArray:
+    """The box around points, shape (1, 4); shape (0, 4) where there are none."""
+    if not len(points):
+        return np.empty((0, 4))
+    return np.concatenate((points.min(axis=0), points.max(axis=0)))[np.newaxis]
 
 
-def _of_pieces(corners: Sequence[Vec3]) -> FloatArray:
+def _flat(points: Iterable[Vec3]) -> FloatArray:
+    """Points as seen from above, shape (n, 2)."""
+    return np.array([(x, y) for x, y, _ in points], dtype=np.float64).reshape(-1, 2)
+
+
+def _of_pieces(corners: Iterable[Vec3]) -> FloatArray:
     """Bounds of each straight piece from corner to corner, shape (n - 1, 4)."""
-    points = np.array([(x, y) for x, y, _ in corners], dtype=np.float64).reshape(-1, 2)
+    points = _flat(corners)
     begins, ends = points[:-1], points[1:]
     return np.hstack((np.minimum(begins, ends), np.maximum(begins, ends)))
 
