@@ -13,7 +13,7 @@ from satAOI_geo.errors import (
     UnitError,
     UnreadableError,
 )
-from satAOI_geo.plan import FloorPlan, Kind
+from satAOI_geo.plan import FloorPlan, Kind, polygons_in
 
 CORPUS = Path(__file__).parents[2] / "shared" / "corpus"
 
@@ -42,15 +42,17 @@ DRAWINGS = {
     "d02": Expected(
         {"units": "m"}, "the header says inch", (600, 640), frozenset({"several-plans"})
     ),
-    "d03": Expected({}, "", (250, 300), frozenset({"floor-inferred"})),
+    "d03": Expected({}, "", (250, 300), frozenset({"floor-inferred", "wall-thick"})),
     "d04": Expected(
         {"units": "in"}, "the header says mm", (200, 215), frozenset({"window-on-door-layer"})
     ),
     "d05": Expected({}, "", (1000, 1100), frozenset({"unit-estimated"})),
     "d06": Expected({"units": "m"}, "the header says mm", (350, 450), frozenset({"floor-guessed"})),
-    "d07": Expected({"units": "mm"}, "the header says inch", (5, 10), frozenset({"floor-guessed"})),
+    "d07": Expected(
+        {"units": "mm"}, "the header says inch", (5, 10), frozenset({"door-over-wall"})
+    ),
     "d08": Expected({}, "", (94, 97), frozenset({"all-walls"})),
-    "d09": Expected({}, "", (160, 172), frozenset({"all-walls", "layer-hidden"})),
+    "d09": Expected({}, "", (160, 172), frozenset({"all-walls", "layer-hidden", "door-over-wall"})),
     "d10": Expected({"units": "cm"}, "the header names no unit", (240, 250)),
     "d11": Expected({}, "", (1400, 1450), frozenset({"room-outline"})),
     "d12": Expected({}, "", (28, 29), frozenset({"wall-on-door-layer"})),
@@ -110,6 +112,12 @@ def test_chairs_and_tables_in_blocks_are_no_obstacles() -> None:
 def test_room_between_its_outline_and_the_outer_one_is_free() -> None:
     # 5 × 3 m inside walls of 35 cm
     assert plan_of("d13").free_region().area == pytest.approx(15e6, rel=1e-9)
+
+
+def test_doors_over_walls_open_the_room_behind_them() -> None:
+    # walls of single lines run through under nine doors, and every room has one
+    free = plan_of("d09").free_region()
+    assert max(part.area for part in polygons_in([free])) > 0.9 * free.area
 
 
 NO_PLAN = {

@@ -83,12 +83,37 @@ from satAOI_geo.errors import InputError
         ("DUCT-SHAFT", Meaning.HOLE),
         ("Structural - Bearing", Meaning.WALL),
         ("PUB_HATCH", Meaning.IGNORE),
+        ("Menuiseries ext", Meaning.WINDOW),
+        ("Türen und Fenster", Meaning.WINDOW),
+        ("Окна и двери", Meaning.WINDOW),
+        ("창문", Meaning.WINDOW),
+        ("A-FLOR-HRAL", Meaning.EQUIPMENT),
+        ("Möblierung", Meaning.IGNORE),
         ("DWELLING", None),
         ("0", None),
     ],
 )
 def test_office_names_are_understood(name: str, meaning: Meaning | None) -> None:
     assert layer_table().of_layer(name).meaning is meaning
+
+
+@pytest.mark.parametrize(
+    ("name", "meaning"),
+    [
+        ("Tür_90", Meaning.DOOR),
+        ("$DorLib2D$00000001", Meaning.DOOR),
+        ("M_Single-Flush-0915 x 2134mm-1-Level 1", Meaning.DOOR),
+        ("$WinLib2D$00000014", Meaning.WINDOW),
+        ("DESK-01", Meaning.IGNORE),
+        ("Stuhl 3", Meaning.IGNORE),
+        ("马桶01", Meaning.IGNORE),
+        ("COL16", Meaning.COLUMN),
+        ("*U12", None),
+        ("A$C3F1", None),
+    ],
+)
+def test_block_names_are_understood(name: str, meaning: Meaning | None) -> None:
+    assert layer_table().of_block(name).meaning is meaning
 
 
 def test_whole_name_is_surer_than_a_part_of_it() -> None:

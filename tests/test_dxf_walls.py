@@ -247,6 +247,15 @@ def test_window_on_the_door_layer_stops_the_robot_and_is_said(tmp_path: Path) ->
     assert "window-on-door-layer" in codes(plan)
 
 
+def test_window_drawn_as_an_outline_and_a_line_on_the_door_layer_stops_the_robot(
+    tmp_path: Path,
+) -> None:
+    document = with_opening(5100)
+    rectangle(document.modelspace(), 4000, 5000, 5200, 5200, layer="A-DOOR")
+    plan = plan_of(document, tmp_path)
+    assert plan.obstacle_region().covers(box(4000, 5000, 5200, 5200))
+
+
 def test_threshold_of_two_lines_is_no_window(tmp_path: Path) -> None:
     plan = plan_of(with_opening(5000, 5200, 5200), tmp_path)
     assert standing(plan, "A-DOOR") == []
@@ -561,6 +570,66 @@ def test_door_drawn_among_walls_is_left_out_and_the_walls_stay(leaf: str, tmp_pa
     plan = plan_of(document, tmp_path)
     assert [o.shape for o in plan.obstacles] == [o.shape for o in bare.obstacles]
     assert "door-among-walls" in codes(plan)
+
+
+def test_leaf_on_a_nameless_layer_is_no_obstacle(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 0, 8000, 9000, 8200, layer="WALL")
+    rectangle(document.modelspace(), 4000, 5000, 4040, 5900, layer="XYZ")
+    document.modelspace().add_arc((4000, 5000), 900, 0, 90, dxfattribs={"layer": "XYZ"})
+    assert standing(plan_of(document, tmp_path), "XYZ") == []
+
+
+def test_block_named_as_a_stair_says_nothing_about_the_lines_around_it(tmp_path: Path) -> None:
+    document = house(opening_mm=900.0, layer="0")
+    rectangle(document.blocks.new("Stair 1"), 1000, 1000, 2000, 3000, layer="0")  # type: ignore[arg-type]
+    document.modelspace().add_blockref("Stair 1", (0, 0))
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == OUTSIDE.area
+    assert plan.free_region().area == INSIDE.area + 900 * 200 - 1000 * 2000
+
+
+def thick_wall(width_mm: float, *, layer: str = "WALL") -> Drawing:
+    """Lines around a room of 6 × 4 m and a wall of some thickness at its right."""
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = MM
+    lines(document.modelspace(), [(0, 0), (6000, 0), (6000, 4000), (0, 4000)], layer=layer)
+    right = 6000 + width_mm
+    lines(document.modelspace(), [(6000, 0), (right, 0), (right, 4000), (6000, 4000)], layer=layer)
+    return document
+
+
+@pytest.mark.parametrize("width_mm", [701.0, 900.0, 1500.0])
+def test_thick_wall_between_two_lines_is_filled_and_said(width_mm: float, tmp_path: Path) -> None:
+    plan = plan_of(thick_wall(width_mm), tmp_path)
+    assert plan.free_region().area == 6000 * 4000
+    assert "wall-thick" in codes(plan)
+
+
+def test_strip_of_floor_beyond_a_wall_is_free(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 0, 8600, 10_000, 8800, layer="WALL")
+    assert plan_of(document, tmp_path).obstacle_region().area == 10_000 * 200
+
+
+def test_space_wider_than_any_wall_is_free(tmp_path: Path) -> None:
+    plan = plan_of(thick_wall(1600), tmp_path)
+    assert plan.free_region().area == 7600 * 4000
+
+
+def test_narrow_space_to_which_a_door_leads_is_free(tmp_path: Path) -> None:
+    document = thick_wall(1200)
+    on = {"layer": "A-DOOR"}
+    document.modelspace().add_arc((6000, 1000), 900, 90, 180, dxfattribs=on)
+    document.modelspace().add_line((6000, 1000), (5100, 1000), dxfattribs=on)
+    plan = plan_of(document, tmp_path)
+    assert plan.free_region().area == 7200 * 4000
+    assert "wall-thick" not in codes(plan)
+
+
+def test_narrow_space_between_lines_that_need_not_be_walls_is_free(tmp_path: Path) -> None:
+    plan = plan_of(thick_wall(1200, layer="0"), tmp_path)
+    assert plan.free_region().area == 7200 * 4000
 
 
 def test_quarter_round_wall_without_a_leaf_stays(tmp_path: Path) -> None:

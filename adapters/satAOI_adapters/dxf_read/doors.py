@@ -8,7 +8,7 @@ And some offices draw whole partitions on the layer of their doors; these are wa
 import math
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -83,14 +83,22 @@ def partitions(
     return [piece for piece, wall in zip(pieces, is_wall, strict=True) if wall]
 
 
-def loose_pieces(doors: Sequence[Feature], door_blocks: frozenset[str]) -> list[Feature]:
-    """The straight pieces of open lines, each as a feature, that are in no door's block."""
+def loose_pieces(
+    doors: Sequence[Feature], door_blocks: frozenset[str], *, with_outlines: bool = False
+) -> list[Feature]:
+    """The straight pieces of lines, each as a feature, that are in no door's block.
+
+    Args:
+        doors: What is drawn on door layers.
+        door_blocks: Names of blocks that are doors.
+        with_outlines: Whether the sides of closed outlines count, too.
+    """
     return [
         replace(feature, paths=(Path((piece,), closed=False),))
         for feature in doors
         if door_blocks.isdisjoint(feature.placed.blocks)
         for path in feature.paths
-        if path.is_straight and not path.closed
+        if path.is_straight and (with_outlines or not path.closed)
         for piece in path.pieces
     ]
 
@@ -100,13 +108,23 @@ def as_lines(pieces: Sequence[Feature]) -> list[LineString]:
     return [LineString((path.start, path.end)) for piece in pieces for path in piece.paths]
 
 
-def without_swings(features: Sequence[Feature]) -> tuple[list[Feature], int]:
-    """Features less the doors drawn among them, and how many doors these are.
+@dataclass(frozen=True, slots=True)
+class Swing:
+    """A door as it is drawn: an arc with a straight leaf from its centre to it.
 
-    A door is an arc with a straight leaf from its centre to it. With the two go the short lines
-    that join the sides of a leaf, and whatever else of the same paths lies within the door's
-    circle: the other side of the leaf.
+    Attributes:
+        arc: About the hinge.
+        leaves: The sides of the leaf.
+        caps: The short lines that join these.
     """
+
+    arc: Arc
+    leaves: tuple[Line, ...]
+    caps: tuple[Line, ...]
+
+
+def swings(features: Sequence[Feature]) -> list[Swing]:
+    """The doors among what is drawn."""
     arcs = [
         piece
         for feature in features
@@ -122,25 +140,36 @@ def without_swings(features: Sequence[Feature]) -> tuple[list[Feature], int]:
         if isinstance(piece, Line)
     ]
     if not arcs or not lines:
-        return list(features), 0
+        return []
     tree = tree_of([end for line in lines for end in (line.start, line.end)])
-    n_doors = 0
-    doors_of: defaultdict[int, list[Arc]] = defaultdict(list)
+    found = []
     for arc in arcs:
         near = [lines[i // 2] for i in tree.query_ball_point(arc.centre, LEAF_SLACK_MM)]
-        leaves = [line for line in near if _is_leaf(line, arc)]
-        n_doors += bool(leaves)
-        for piece in (arc, *leaves, *_caps(leaves, lines, tree)) if leaves else ():
-            doors_of[id(piece)].append(arc)
+        leaves = tuple(line for line in near if _is_leaf(line, arc))
+        if leaves:
+            found.append(Swing(arc, leaves, _caps(leaves, lines, tree)))
+    return found
+
+
+def without_swings(features: Sequence[Feature], found: Sequence[Swing]) -> list[Feature]:
+    """Features less the doors found among them.
+
+    With a door go whatever else of the same paths lies within its circle: the other side of the
+    leaf.
+    """
+    doors_of: defaultdict[int, list[Arc]] = defaultdict(list)
+    for swing in found:
+        for piece in (swing.arc, *swing.leaves, *swing.caps):
+            doors_of[id(piece)].append(swing.arc)
     kept = []
     for feature in features:
         paths = tuple(path for path in feature.paths if not _draws_door(path, doors_of))
         if paths:
             kept.append(replace(feature, paths=paths))
-    return kept, n_doors
+    return kept
 
 
-def _caps(leaves: Sequence[Line], lines: Sequence[Line], tree: "cKDTree") -> list[Line]:
+def _caps(leaves: Sequence[Line], lines: Sequence[Line], tree: "cKDTree") -> tuple[Line, ...]:
     """The short lines that run from a leaf's one side to its other.
 
     Args:
@@ -151,7 +180,7 @@ def _caps(leaves: Sequence[Line], lines: Sequence[Line], tree: "cKDTree") -> lis
     ends = [end for leaf in leaves for end in (leaf.start, leaf.end)]
     touched = {i for end in ends for i in tree.query_ball_point(end, CLOSE_GAPS_MM)}
     joining = [lines[i // 2] for i in touched if i % 2 == 0 and i + 1 in touched]
-    return [line for line in joining if math.dist(line.start, line.end) <= LEAF_SLACK_MM]
+    return tuple(line for line in joining if math.dist(line.start, line.end) <= LEAF_SLACK_MM)
 
 
 def _draws_door(path: Path, doors_of: Mapping[int, Sequence[Arc]]) -> bool:

@@ -21,6 +21,7 @@ from ezdxf.entities import (
     MPolygon,
     Polyline,
     Solid,
+    Wipeout,
 )
 from ezdxf.entities import (
     Line as LineEntity,
@@ -28,6 +29,8 @@ from ezdxf.entities import (
 from ezdxf.entities import (
     Spline as SplineEntity,
 )
+from shapely.geometry import MultiPoint
+from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Line, Piece, Point
 from satAOI_adapters.dxf_read.expand import Placed
@@ -74,6 +77,12 @@ def features_of(placed: Placed, mm_per_unit: float, origin_mm: Point) -> list[Fe
             layer=placed.layer,
             handle=placed.handle,
         ) from error
+
+
+def mask_of(placed: Placed, mm_per_unit: float, origin_mm: Point) -> BaseGeometry:
+    """The hull of what a mask (WIPEOUT) hides; arguments as for `features_of`."""
+    placement = Placement.of(placed, mm_per_unit, origin_mm)
+    return MultiPoint(placement.points(_as(placed, Wipeout).boundary_path_wcs())).convex_hull
 
 
 def _line(placed: Placed, placement: Placement) -> Iterator[Feature]:

@@ -61,7 +61,7 @@ def with_meaning(drawn: Sequence[Placed], table: LayerTable) -> Meanings:
             seen, findings = _with_fills(seen, meaning, table)
             filled.extend(findings)
     is_unnamed = [entity.verdict.meaning is None or _is_face(entity) for entity in seen]
-    if any(entity.verdict.meaning in TELLING for entity in seen) or not any(is_unnamed):
+    if any(_tells(entity, table) for entity in seen) or not any(is_unnamed):
         return Meanings(tuple(seen), is_named=True, findings=tuple(filled))
     as_wall = Verdict(Meaning.WALL)
     walls = [entity for entity, unnamed in zip(seen, is_unnamed, strict=True) if unnamed]
@@ -100,6 +100,19 @@ def _with_fills(
         )
         for layer in layers
     ]
+
+
+def _tells(entity: Seen, table: LayerTable) -> bool:
+    """Whether an entity's layer tells what stops the robot.
+
+    A block named as a stair or a column says nothing about the layers around it, unless the user's
+    file names it.
+    """
+    verdict = entity.verdict
+    if verdict.meaning not in TELLING:
+        return False
+    by_layer = table.of_layer(entity.placed.layer)
+    return by_layer.meaning is verdict.meaning or verdict.certainty is Certainty.GIVEN
 
 
 def _is_ignored_fill(entity: Seen) -> bool:

@@ -3,13 +3,16 @@
 import math
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Path
+from satAOI_adapters.dxf_read.doors import LEAST_LEAF_MM
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.linework import (
     WALL_MM,
@@ -21,6 +24,7 @@ from satAOI_adapters.dxf_read.linework import (
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.shapes import (
     band,
+    by_chords,
     even_odd,
     is_thin,
     is_wide,
@@ -33,8 +37,17 @@ from satAOI_adapters.dxf_read.shapes import (
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_geo.plan import Circle, Finding, Kind, Obstacle, Shape, polygons_in
 
-COVERED_MM: float = 1e-3
+COVERED_MM: Final = 1e-3
 """A line this close to a solid adds nothing to it."""
+
+THICK_MM: Final = 1500.0
+"""Widest space between lines on wall layers that is a wall where no door leads in."""
+
+MOSTLY: Final = 0.5
+"""Share of its rim that has walls beyond it where a space lies between walls, not in one."""
+
+AT_DOOR_MM: Final = 100.0
+"""A door, shut, is no farther from the space that it leads to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,23 +83,25 @@ def walls(
     features: Sequence[Feature],
     columns: Sequence[Obstacle],
     floor_edges: Sequence[LineString],
+    doors: Sequence[LineString],
     terms: Terms,
 ) -> Standing:
     """Walls from fills, bands, outlines and lines.
 
     A closed outline no wider than a wall is solid. A wider one is the face of a wall around a
     room, and only its line counts. The space between faces is filled where it is closed and
-    nowhere wider than a wall; a room never is.
+    nowhere wider than a wall; on layers that are named as walls also where it is twice as wide,
+    lies between rooms and no door is drawn at it. A room never is.
 
     Args:
         features: What is drawn on wall layers.
         columns: Obstacles that walls may end at.
         floor_edges: Outlines of the floor, which may be the outer faces of walls.
+        doors: The lines of doors.
         terms: The terms of the reading.
     """
     obstacles: list[Obstacle] = []
     lines: list[tuple[Path, Feature]] = []
-    wide: Counter[str] = Counter()
     for feature in features:
         if feature.is_area or feature.width_mm:
             obstacles.extend(_obstacles(area_of(feature), Kind.WALL, feature))
@@ -97,19 +112,29 @@ def walls(
             if shapes and all(_is_wall_thick(shape) for shape in shapes):
                 obstacles.extend(_obstacles(shapes, Kind.WALL, feature))
             else:
-                wide[feature.placed.layer] += path.closed
                 lines.append((path, feature))
     if not lines:
         return Standing(tuple(obstacles))
     outlines = outlines_of([*obstacles, *columns])
     drawn_lines = middle_lines(path for path, _ in lines)
     joined = with_wall_ends(network([*drawn_lines, *outlines], terms.gap_mm))
+    known = shapely.union_all([solid.region() for solid in (*obstacles, *columns)])
+    spaces = _spaces(joined.faces(), THICK_MM if terms.is_named else WALL_MM, known)
+    thin = [space for space in spaces if is_thin(space, WALL_MM)]
+    wider = [space for space in spaces if not is_thin(space, WALL_MM)]
+    thick = _without_doors(_between_rooms(wider, shapely.union_all([known, *thin])), doors)
     if floor_edges:
+        # between a wall and the edge of the floor anything wider may be a terrace
         at_edges = with_wall_ends_at(joined, floor_edges).lines
-        joined = replace(joined, lines=network(at_edges, terms.gap_mm).lines)
-    inside = _insides(joined.faces(), lines, [*obstacles, *columns])
+        thin = _spaces(network(at_edges, terms.gap_mm).faces(), WALL_MM, known)
+    inside = _insides([*thin, *thick], lines)
     drawn = [o for path, feature in lines for o in _obstacles(traces(path), Kind.WALL, feature)]
-    findings = (*_wide_outlines(wide), *_filled(inside), *_gaps("wall", joined, terms))
+    findings = (
+        *_wide_outlines(lines, thick),
+        *_filled(thin),
+        *_thick(thick, terms),
+        *_gaps("wall", joined, terms),
+    )
     return Standing((*obstacles, *drawn, *inside), findings)
 
 
@@ -144,26 +169,48 @@ def _loops(layer: str, paths: Sequence[tuple[Path, Feature]], kind: Kind, terms:
     return Standing(tuple(obstacles), _gaps(layer, joined, terms))
 
 
-def _insides(
-    faces: Sequence[Polygon],
-    lines: Sequence[tuple[Path, Feature]],
-    solids: Sequence[Obstacle],
-) -> list[Obstacle]:
-    """The insides of walls that are drawn by their faces, as obstacles."""
-    known = shapely.union_all([solid.region() for solid in solids])
+def _spaces(faces: Sequence[Polygon], widest_mm: float, known: BaseGeometry) -> list[Polygon]:
+    """The faces between lines that are nowhere wider than this, less those known to be solid."""
     shapely.prepare(known)
     is_known = shapely.contains(known, shapely.point_on_surface(faces))
     is_crumb = shapely.area(faces) < CLOSE_GAPS_MM**2
-    thin = [
+    return [
         face
         for face, is_out in zip(faces, is_known | is_crumb, strict=True)
-        if not is_out and is_thin(face, WALL_MM)
+        if not is_out and is_thin(face, widest_mm)
     ]
-    nearest = shapely.STRtree(middle_lines(path for path, _ in lines)).nearest(thin)
+
+
+def _between_rooms(spaces: Sequence[Polygon], walls: BaseGeometry) -> list[Polygon]:
+    """The spaces that have no walls around them, as closets and shafts have."""
+    around = walls.buffer(CLOSE_GAPS_MM)
+    shapely.prepare(around)
+    return [
+        space
+        for space in spaces
+        if space.boundary.intersection(around).length <= MOSTLY * space.boundary.length
+    ]
+
+
+def _without_doors(spaces: Sequence[Polygon], doors: Sequence[LineString]) -> list[Polygon]:
+    """The spaces along which no door is drawn."""
+    tree = shapely.STRtree(doors)
+    closed = []
+    for space in spaces:
+        rim = space.boundary.buffer(AT_DOOR_MM)
+        near = tree.geometries[tree.query(rim, predicate="intersects")]
+        if shapely.length(shapely.intersection(near, rim)).max(initial=0.0) < LEAST_LEAF_MM:
+            closed.append(space)
+    return closed
+
+
+def _insides(spaces: Sequence[Polygon], lines: Sequence[tuple[Path, Feature]]) -> list[Obstacle]:
+    """The insides of walls that are drawn by their faces, as obstacles."""
+    nearest = shapely.STRtree(middle_lines(path for path, _ in lines)).nearest(spaces)
     owners = [lines[i][1].placed for i in nearest]
     return [
         Obstacle(face, Kind.WALL, placed.layer, placed.handle)
-        for face, placed in zip(thin, owners, strict=True)
+        for face, placed in zip(spaces, owners, strict=True)
     ]
 
 
@@ -189,27 +236,51 @@ def _obstacles(shapes: Iterable[Shape], kind: Kind, feature: Feature) -> list[Ob
     return [Obstacle(shape, kind, placed.layer, placed.handle) for shape in shapes]
 
 
-def _wide_outlines(wide: Counter[str]) -> Iterable[Finding]:
+def _wide_outlines(
+    lines: Sequence[tuple[Path, Feature]], thick: Sequence[Polygon]
+) -> Iterable[Finding]:
+    tree = shapely.STRtree(thick)
+    wide = Counter(
+        feature.placed.layer
+        for path, feature in lines
+        if path.closed and not tree.query(by_chords(path).point_on_surface(), "within").size
+    )
     for layer, count in wide.items():
-        if count:
-            yield Finding(
-                "wide-outline",
-                f"{count} closed outlines on wall layer '{layer}' are wider than {WALL_MM:g} mm: "
-                "their lines stop the robot, what they enclose counts as floor",
-                "draw solid parts filled (HATCH, SOLID) or on a column layer",
-                layer=layer,
-            )
+        yield Finding(
+            "wide-outline",
+            f"{count} closed outlines on wall layer '{layer}' are wider than {WALL_MM:g} mm: "
+            "their lines stop the robot, what they enclose counts as floor",
+            "draw solid parts filled (HATCH, SOLID) or on a column layer",
+            layer=layer,
+        )
 
 
-def _filled(inside: Sequence[Obstacle]) -> Iterable[Finding]:
-    if inside:
-        area_m2 = sum(wall.region().area for wall in inside) / 1e6
+def _filled(thin: Sequence[Polygon]) -> Iterable[Finding]:
+    if thin:
         yield Finding(
             "wall-filled",
-            f"{len(inside)} closed spaces between wall lines, {area_m2:.2f} m² together and "
+            f"{len(thin)} closed spaces between wall lines, {_area_m2(thin):.2f} m² together and "
             f"nowhere wider than {WALL_MM:g} mm, are taken as the insides of walls",
             "draw walls filled or as closed outlines if one of them is free floor",
         )
+
+
+def _thick(thick: Sequence[Polygon], terms: Terms) -> Iterable[Finding]:
+    if thick:
+        spot = thick[0].representative_point()
+        x_mm, y_mm = terms.frame.to_drawing_mm([(spot.x, spot.y)])[0]
+        yield Finding(
+            "wall-thick",
+            f"{len(thick)} closed spaces between wall lines, {_area_m2(thick):.2f} m² together, "
+            f"{WALL_MM:g} to {THICK_MM:g} mm wide and without a door, are taken as thick walls, "
+            f"the first at ({x_mm:.1f}, {y_mm:.1f}) mm",
+            "break the wall lines at the door if one of them is a room",
+            at_mm=(float(x_mm), float(y_mm)),
+        )
+
+
+def _area_m2(spaces: Sequence[Polygon]) -> float:
+    return float(shapely.area(spaces).sum()) / 1e6
 
 
 def _gaps(what: str, joined: Network, terms: Terms) -> tuple[Finding, ...]:

@@ -16,15 +16,18 @@ from shapely.geometry import LineString, box
 
 from satAOI_adapters.collector import collector_at_rest
 from satAOI_adapters.dxf_read.curves import Point
+from satAOI_adapters.dxf_read.dashed import without_dashed
 from satAOI_adapters.dxf_read.doors import (
     partition_findings,
     partitions,
     spans,
+    swings,
     without_swings,
 )
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.floor import floor_of
 from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
+from satAOI_adapters.dxf_read.openings import shut, with_openings
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
 from satAOI_adapters.dxf_read.plans import Drawn, chosen, clusters, within
@@ -81,10 +84,11 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
     everything = drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
     drawn, choice = _chosen(everything, options, start_mm, frame)
     terms = Terms(frame, options.close_gaps_mm, drawing.is_named, _region_mm(options, frame))
-    standing = _standing(drawn, terms, drawing.door_blocks)
+    standing = _standing(drawn, terms, drawing)
     sills = spans(drawn[Meaning.DOOR], [o.region() for o in standing.obstacles])
     floor = floor_of(drawn[Meaning.FLOOR], standing.obstacles, sills, terms)
-    others = unclassified(drawn[None], floor.region, standing.obstacles)
+    of_no_layer = without_swings(drawn[None], swings(drawn[None]))
+    others = unclassified(of_no_layer, floor.region, standing.obstacles)
     plan = FloorPlan(
         floor=floor.region,
         obstacles=_on(floor.region, (*standing.obstacles, *others.obstacles)),
@@ -142,26 +146,47 @@ def _left_out(count: int, what: str) -> tuple[Finding, ...]:
     )
 
 
-def _standing(drawn: Drawn, terms: Terms, door_blocks: frozenset[str]) -> Standing:
+def _standing(drawn: Drawn, terms: Terms, drawing: Survey) -> Standing:
     """The obstacles of all kinds that layers name."""
     by_kind: dict[Kind, list[Feature]] = {kind: [] for kind in Kind}
     for meaning, kind in KINDS.items():
         by_kind[kind].extend(drawn[meaning])
     parts = [solids(by_kind[kind], kind, terms) for kind in SOLID_KINDS]
     columns = parts[SOLID_KINDS.index(Kind.COLUMN)].obstacles
-    drawn_as_walls, n_doors = without_swings(by_kind[Kind.WALL])
-    faces = _lines(drawn_as_walls)
-    on_door_layers = partitions(drawn[Meaning.DOOR], faces, door_blocks)
-    glazed = windows(drawn[Meaning.DOOR], faces, door_blocks)
-    edges = _lines(drawn[Meaning.FLOOR], only_closed=True)
-    parts.append(walls([*drawn_as_walls, *on_door_layers, *glazed], columns, edges, terms))
+    parts.append(_walls(by_kind[Kind.WALL], drawn, columns, terms, drawing))
     return Standing(
         tuple(obstacle for part in parts for obstacle in part.obstacles),
+        tuple(finding for part in parts for finding in part.findings),
+    )
+
+
+def _walls(
+    on_walls: Sequence[Feature],
+    drawn: Drawn,
+    columns: Sequence[Obstacle],
+    terms: Terms,
+    drawing: Survey,
+) -> Standing:
+    """The walls: what is drawn on their layers and on those of doors, open where doors are."""
+    doors_on_walls = swings(on_walls)
+    drawn_as_walls = without_swings(on_walls, doors_on_walls)
+    drawn_as_walls, of_dashes = without_dashed(drawn_as_walls, drawing.dashed)
+    faces = _lines(drawn_as_walls)
+    on_door_layers = partitions(drawn[Meaning.DOOR], faces, drawing.door_blocks)
+    glazed = windows(drawn[Meaning.DOOR], faces, drawing.door_blocks)
+    edges = _lines(drawn[Meaning.FLOOR], only_closed=True)
+    doors = [*doors_on_walls, *swings(drawn[Meaning.DOOR]), *swings(drawn[None])]
+    of_doors = [*_lines(drawn[Meaning.DOOR]), *(span.line for door in doors for span in shut(door))]
+    whole = walls([*drawn_as_walls, *on_door_layers, *glazed], columns, edges, of_doors, terms)
+    standing = with_openings(whole, doors, drawing.masks_of_doors(terms.frame), terms)
+    return Standing(
+        standing.obstacles,
         (
-            *(finding for part in parts for finding in part.findings),
+            *standing.findings,
             *partition_findings(on_door_layers),
             *window_findings(glazed),
-            *_doors_among_walls(n_doors),
+            *_doors_among_walls(len(doors_on_walls)),
+            *of_dashes,
         ),
     )
 

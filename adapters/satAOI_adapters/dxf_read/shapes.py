@@ -61,7 +61,7 @@ def solid(path: Path) -> list[Polygon]:
     direct = _one_sided(path, outside=True)
     if direct is not None:
         return [direct]
-    return polygons_in([shapely.union_all([_by_chords(path), *slivers(path)])])
+    return polygons_in([shapely.union_all([by_chords(path), *slivers(path)])])
 
 
 def is_wide(path: Path, width_mm: float) -> bool:
@@ -69,7 +69,7 @@ def is_wide(path: Path, width_mm: float) -> bool:
     x_mm, y_mm = zip(*path.rough(), strict=True)
     if min(max(x_mm) - min(x_mm), max(y_mm) - min(y_mm)) <= width_mm:
         return False
-    return not is_thin(_by_chords(path), width_mm + 4 * SAGITTA_MM)
+    return not is_thin(by_chords(path), width_mm + 4 * SAGITTA_MM)
 
 
 def is_thin(region: BaseGeometry, width_mm: float) -> bool:
@@ -90,7 +90,7 @@ def room(path: Path) -> list[Polygon]:
     direct = _one_sided(path, outside=False)
     if direct is not None:
         return [direct]
-    return polygons_in([_by_chords(path).difference(shapely.union_all(slivers(path)))])
+    return polygons_in([by_chords(path).difference(shapely.union_all(slivers(path)))])
 
 
 def even_odd(paths: Sequence[Path], *, outside: bool = True) -> list[Polygon | Circle]:
@@ -102,7 +102,7 @@ def even_odd(paths: Sequence[Path], *, outside: bool = True) -> list[Polygon | C
     """
     if len(paths) == 1 and outside and (circle := circle_of(paths[0])):
         return [circle]
-    rough = [_by_chords(path) for path in paths]
+    rough = [by_chords(path) for path in paths]
     filled: BaseGeometry = Polygon()
     for path, own in zip(paths, rough, strict=True):
         if own.is_empty:
@@ -220,7 +220,7 @@ def _corners(path: Path, *, outside: bool) -> list[Point]:
     return points
 
 
-def _by_chords(path: Path) -> BaseGeometry:
+def by_chords(path: Path) -> BaseGeometry:
     """What a closed path encloses, by its chords; empty where it encloses nothing."""
     points = path.chords()
     if len(points) < 4:

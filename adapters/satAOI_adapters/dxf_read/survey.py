@@ -9,17 +9,20 @@ from typing import Final, TypeAlias
 
 import numpy as np
 from ezdxf.document import Drawing
+from shapely.geometry import Polygon
 
 from satAOI_adapters.dxf_read import limits
 from satAOI_adapters.dxf_read.curves import Point
-from satAOI_adapters.dxf_read.entities import DRAWN, features_of
+from satAOI_adapters.dxf_read.dashed import dashed_walls
+from satAOI_adapters.dxf_read.entities import DRAWN, features_of, mask_of
 from satAOI_adapters.dxf_read.estimate import estimate
 from satAOI_adapters.dxf_read.expand import Expansion, Placed, expand
 from satAOI_adapters.dxf_read.features import Feature
+from satAOI_adapters.dxf_read.finite import not_finite
 from satAOI_adapters.dxf_read.frames import without_frames
 from satAOI_adapters.dxf_read.joints import with_tiles
 from satAOI_adapters.dxf_read.lookalikes import with_lookalikes
-from satAOI_adapters.dxf_read.meaning import LISTED, Seen, with_meaning
+from satAOI_adapters.dxf_read.meaning import LISTED, Seen, verdict_of, with_meaning
 from satAOI_adapters.dxf_read.opening import open_drawing
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.plans import Drawn
@@ -65,6 +68,8 @@ class Survey:
             layers can be told without it.
         box: Left, bottom, right, top of what is drawn, in drawing units; None if nothing is.
         door_blocks: Names of blocks that are doors.
+        door_masks: Masks on door layers and in doors' blocks.
+        dashed: Identities of what is placed on wall layers and drawn dashed.
         is_named: Whether layers tell what stops the robot, rather than everything being walls.
         middle: In the midst of it, in drawing units; a few strays do not move it.
         noticed: What was noticed so far, the unit aside.
@@ -82,6 +87,8 @@ class Survey:
     box: Box | None
     middle: Point
     door_blocks: frozenset[str]
+    door_masks: tuple[Placed, ...]
+    dashed: frozenset[int]
     is_named: bool
     noticed: tuple[Finding, ...]
     unread: tuple[Placed, ...]
@@ -146,6 +153,11 @@ class Survey:
             found[entity.verdict.meaning].extend(features)
         return found
 
+    def masks_of_doors(self, frame: Frame) -> list[Polygon]:
+        """What masks of doors hide, in millimetres of a frame."""
+        hulls = [mask_of(mask, frame.mm_per_unit, frame.origin_mm) for mask in self.door_masks]
+        return [hull for hull in hulls if isinstance(hull, Polygon)]
+
 
 def drawn_by(entities: Iterable[Seen], frame: Frame) -> Iterator[tuple[Seen, list[Feature]]]:
     """What each of some entities draws, in millimetres of a frame.
@@ -195,6 +207,8 @@ def survey(path: Path, options: ReadOptions) -> Survey:
         box=box,
         middle=middle,
         door_blocks=_door_blocks(meanings.seen, table),
+        door_masks=_door_masks(expansion.placed, table),
+        dashed=dashed_walls(meanings.seen),
         is_named=meanings.is_named,
         noticed=(
             *opened.findings,
@@ -256,6 +270,11 @@ def _looked_at(
 def _door_blocks(seen: Iterable[Seen], table: LayerTable) -> frozenset[str]:
     names = {name for entity in seen for name in entity.placed.blocks}
     return frozenset(name for name in names if table.of_block(name).meaning is Meaning.DOOR)
+
+
+def _door_masks(placed: Iterable[Placed], table: LayerTable) -> tuple[Placed, ...]:
+    masks = (e for e in placed if e.kind == "WIPEOUT" and not not_finite(e.entity))
+    return tuple(mask for mask in masks if verdict_of(mask, table).meaning is Meaning.DOOR)
 
 
 def _in_drawing_units(

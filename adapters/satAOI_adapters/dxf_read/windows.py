@@ -51,7 +51,7 @@ def windows(
         walls: Walls that are known already.
         door_blocks: Names of blocks that are doors.
     """
-    pieces = loose_pieces(doors, door_blocks)
+    pieces = loose_pieces(doors, door_blocks, with_outlines=True)
     lines = as_lines(pieces)
     # the glass ends half-way between the wall's faces
     reach = spanning(lines, walls, FACES_MM / 2)

@@ -1,0 +1,251 @@
+"""Openings that doors show in walls drawn without a break.
+
+Many offices lay the symbol of a door over a wall whose lines go on under it, with a mask (WIPEOUT)
+or without. The swing tells the opening: it reaches from the hinge to where the tip of the leaf is
+when the door is shut. A door without a swing tells it by its mask.
+
+      ┌╮ leaf and swing
+      │ ╲
+    ══╪═══╪══      a wall, whole as it is drawn
+      hinge tip
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final, TypeAlias
+
+import shapely
+from shapely.geometry import LineString, Polygon
+from shapely.geometry import Point as Spot
+from shapely.geometry.base import BaseGeometry
+
+from satAOI_adapters.dxf_read.curves import Point
+from satAOI_adapters.dxf_read.doors import ABREAST_MM, LEAF_SLACK_MM, Swing
+from satAOI_adapters.dxf_read.linework import WALL_MM
+from satAOI_adapters.dxf_read.obstacles import Standing
+from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
+from satAOI_adapters.dxf_read.shapes import rounded
+from satAOI_adapters.dxf_read.terms import Terms
+from satAOI_geo.plan import Circle, Finding, Obstacle, Shape, polygons_in
+
+PLACES: Final = (0.25, 0.5, 0.75)
+"""Where along a door it is asked what lies across, as shares of its width."""
+
+BESIDE_MM: Final = 100.0
+"""And how far beyond its ends, for the jambs of an opening."""
+
+Depth: TypeAlias = tuple[float, float]
+"""From where to where a wall reaches across a door's line, to the right below 0."""
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Where a door is when it is shut: from its hinge to its tip."""
+
+    start: Point
+    end: Point
+
+    @property
+    def width_mm(self) -> float:
+        """How wide the door is."""
+        return math.dist(self.start, self.end)
+
+    @property
+    def line(self) -> LineString:
+        """From start to end."""
+        return LineString((self.start, self.end))
+
+    def at(self, along_mm: float, left_mm: float) -> Point:
+        """The point so far from the start along the door and to the left of it."""
+        width_mm = self.width_mm
+        (x, y), (end_x, end_y) = self.start, self.end
+        way_x, way_y = (end_x - x) / width_mm, (end_y - y) / width_mm
+        return x + along_mm * way_x - left_mm * way_y, y + along_mm * way_y + left_mm * way_x
+
+    def turned(self) -> "Span":
+        """The same door on the other side of its hinge."""
+        return Span(self.start, self.at(-self.width_mm, 0.0))
+
+    def across(self, along_mm: float) -> LineString:
+        """A line across the door that is longer, to either side, than any wall is thick."""
+        return LineString((self.at(along_mm, -WALL_MM), self.at(along_mm, WALL_MM)))
+
+    def opening(self, depth: Depth) -> Polygon:
+        """What the door opens in a wall of this depth."""
+        right, left = depth[0] - CLOSE_GAPS_MM, depth[1] + CLOSE_GAPS_MM
+        return Polygon(
+            [
+                self.at(0.0, right),
+                self.at(self.width_mm, right),
+                self.at(self.width_mm, left),
+                self.at(0.0, left),
+            ]
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Crossing:
+    """What walls do where a door is shut.
+
+    Attributes:
+        depths: Of the wall at each of `PLACES`, where there is one.
+        has_jambs: Whether there are walls beyond both ends.
+    """
+
+    span: Span
+    depths: tuple[Depth, ...]
+    has_jambs: bool
+
+    @property
+    def is_free(self) -> bool:
+        """Whether the door stands in an opening that is drawn as one."""
+        return self.has_jambs and not self.depths
+
+    @property
+    def depth(self) -> Depth | None:
+        """The depth of the one wall that the door lies over, or None."""
+        if len(self.depths) < len(PLACES):
+            return None
+        right, left = zip(*self.depths, strict=True)
+        is_even = max(max(right) - min(right), max(left) - min(left)) <= ABREAST_MM
+        # a wall that runs along the lines across reaches as far as these
+        is_wall = max(left) - min(right) <= WALL_MM
+        return (min(right), max(left)) if is_even and is_wall else None
+
+
+def with_openings(
+    walls: Standing, doors: Sequence[Swing], masks: Sequence[Polygon], terms: Terms
+) -> Standing:
+    """Walls with the openings that doors drawn over them show.
+
+    Args:
+        walls: As they are drawn.
+        doors: With a swing.
+        masks: Of doors; they count where no door swings.
+        terms: The terms of the reading.
+    """
+    tree = shapely.STRtree([wall.region() for wall in walls.obstacles])
+    openings: list[Polygon] = []
+    findings: list[Finding] = []
+    for spans in (*map(shut, doors), *map(_middles, _alone(masks, doors))):
+        crossings = [_crossing(span, tree) for span in spans]
+        over = [(c.span, depth) for c in crossings if (depth := c.depth) is not None]
+        if any(_is_free(crossing, tree) for crossing in crossings):
+            continue
+        if len(over) == 1:
+            ((span, depth),) = over
+            openings.append(span.opening(depth))
+            findings.append(_opened(span, terms))
+        elif any(crossing.depths for crossing in crossings):
+            findings.append(_left_closed(spans[0], terms))
+    return Standing(_cut(walls.obstacles, openings), (*walls.findings, *findings))
+
+
+def shut(door: Swing) -> list[Span]:
+    """Where a door may be when it is shut: at the end of its arc that its leaf is not at."""
+    hinge, ends = door.arc.centre, (door.arc.start, door.arc.end)
+    tips = [tip for leaf in door.leaves for tip in (leaf.start, leaf.end)]
+    free = [end for end in ends if all(math.dist(end, tip) > LEAF_SLACK_MM for tip in tips)]
+    return [Span(hinge, end) for end in free or ends]
+
+
+def _alone(masks: Sequence[Polygon], doors: Sequence[Swing]) -> list[Polygon]:
+    """The masks at which no door swings."""
+    hinges = shapely.STRtree([Spot(door.arc.centre) for door in doors])
+    return [
+        mask
+        for mask in masks
+        if not hinges.query(mask, predicate="dwithin", distance=LEAF_SLACK_MM).size
+    ]
+
+
+def _middles(mask: Polygon) -> list[Span]:
+    """The two middle lines of a rectangle around a mask."""
+    corners = shapely.get_coordinates(mask.minimum_rotated_rectangle)
+    middles = [(float(x), float(y)) for x, y in (corners[:-1] + corners[1:]) / 2]
+    return [Span(middles[0], middles[2]), Span(middles[1], middles[3])]
+
+
+def _is_free(crossing: Crossing, tree: shapely.STRtree) -> bool:
+    """Whether a door's opening is drawn, be it with the door's symbol turned about the hinge."""
+    return crossing.is_free or _crossing(crossing.span.turned(), tree).is_free
+
+
+def _crossing(span: Span, tree: shapely.STRtree) -> Crossing:
+    near = tree.query(
+        LineString((span.at(-BESIDE_MM, 0), span.at(span.width_mm + BESIDE_MM, 0))),
+        predicate="dwithin",
+        distance=WALL_MM,
+    )
+    walls = shapely.union_all(tree.geometries[near])
+    depths = [_depth(span, share * span.width_mm, walls) for share in PLACES]
+    beyond = [_depth(span, at_mm, walls) for at_mm in (-BESIDE_MM, span.width_mm + BESIDE_MM)]
+    return Crossing(span, tuple(d for d in depths if d is not None), None not in beyond)
+
+
+def _depth(span: Span, along_mm: float, walls: BaseGeometry) -> Depth | None:
+    """How deep the wall is that the door lies over at one place."""
+    middle = Spot(span.at(along_mm, 0.0))
+    across = span.across(along_mm)
+    hits = [
+        part
+        for part in shapely.get_parts(across.intersection(walls))
+        if part.distance(middle) <= LEAF_SLACK_MM
+    ]
+    reach_mm = [
+        across.project(Spot(corner)) - WALL_MM
+        for hit in hits
+        for corner in shapely.get_coordinates(hit)
+    ]
+    return (min(reach_mm), max(reach_mm)) if reach_mm else None
+
+
+def _cut(walls: Sequence[Obstacle], openings: Sequence[Polygon]) -> tuple[Obstacle, ...]:
+    if not openings:
+        return tuple(walls)
+    free = shapely.union_all(openings)
+    shapely.prepare(free)
+    kept: list[Obstacle] = []
+    for wall in walls:
+        if isinstance(wall.shape, Circle) or not free.intersects(wall.shape):
+            kept.append(wall)
+        else:
+            kept.extend(replace(wall, shape=part) for part in _beside(wall.shape, free))
+    return tuple(kept)
+
+
+def _beside(shape: LineString | Polygon, free: BaseGeometry) -> list[Shape]:
+    """The parts of a wall beside openings."""
+    rest = shape.difference(free)
+    if isinstance(shape, Polygon):
+        return list(rounded(polygons_in([rest])))
+    return [part for part in shapely.get_parts(rest) if part.length]
+
+
+def _opened(span: Span, terms: Terms) -> Finding:
+    x_mm, y_mm = _hinge(span, terms)
+    return Finding(
+        "door-over-wall",
+        f"a door at ({x_mm:.1f}, {y_mm:.1f}) mm lies over a wall that goes on under it: the wall "
+        f"is taken as open there, {span.width_mm:.0f} mm wide",
+        "break the wall in the drawing, or draw what is no door on another layer",
+        at_mm=(x_mm, y_mm),
+    )
+
+
+def _left_closed(span: Span, terms: Terms) -> Finding:
+    x_mm, y_mm = _hinge(span, terms)
+    return Finding(
+        "door-in-wall",
+        f"a door at ({x_mm:.1f}, {y_mm:.1f}) mm lies over walls, and where they are open is not "
+        "clear: they stay closed",
+        "break the wall in the drawing",
+        at_mm=(x_mm, y_mm),
+    )
+
+
+def _hinge(span: Span, terms: Terms) -> Point:
+    """Where a door starts, in the drawing's axes."""
+    x_mm, y_mm = terms.frame.to_drawing_mm([span.start])[0]
+    return float(x_mm), float(y_mm)

@@ -1,0 +1,172 @@
+"""Doors drawn over walls that go on under them, and lines across openings that a door swings in."""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import shapely
+from ezdxf import transform
+from ezdxf.document import Drawing
+from ezdxf.layouts import BaseLayout, Modelspace
+from ezdxf.math import Matrix44
+from shapely.geometry import LineString, box
+
+from satAOI_geo.plan import FloorPlan
+from tests.drawings import codes, drawing, plan_of, rectangle, standing
+
+WALL = box(0, 5000, 10_000, 5200)
+OPENING = box(4000, 5000, 4900, 5200)
+ON_WALL, ON_DOOR = {"layer": "WALL"}, {"layer": "A-DOOR"}
+
+
+def outline(space: Modelspace) -> None:
+    rectangle(space, *WALL.bounds, layer="WALL")
+
+
+def faces(space: Modelspace) -> None:
+    for y in (5000, 5200):
+        space.add_line((0, y), (10_000, y), dxfattribs=ON_WALL)
+
+
+def fill(space: Modelspace) -> None:
+    hatch = space.add_hatch(dxfattribs=ON_WALL)
+    hatch.paths.add_polyline_path(list(WALL.exterior.coords[:-1]), is_closed=True)
+
+
+def swing(space: BaseLayout, layer: str, *, shut_deg: float = 0.0, open_deg: float = 90.0) -> None:
+    """A door of 900 mm with its hinge at (4000, 5200)."""
+    space.add_arc(
+        (4000, 5200),
+        900,
+        min(shut_deg, open_deg),
+        max(shut_deg, open_deg),
+        dxfattribs={"layer": layer},
+    )
+    turn_rad = math.radians(open_deg)
+    tip = (4000 + 900 * math.cos(turn_rad), 5200 + 900 * math.sin(turn_rad))
+    space.add_line((4000, 5200), tip, dxfattribs={"layer": layer})
+
+
+def block_with_mask(document: Drawing) -> None:
+    block = document.blocks.new("Door 90")
+    swing(block, "0")
+    block.add_wipeout([(3950, 4990), (4950, 4990), (4950, 5210), (3950, 5210)])
+    document.modelspace().add_blockref("Door 90", (0, 0))
+
+
+def in_drawing(plan: FloorPlan) -> shapely.Geometry:
+    """The obstacles in the drawing's axes."""
+    return shapely.affinity.translate(plan.obstacle_region(), *plan.frame.origin_mm)
+
+
+@pytest.mark.parametrize("wall", [outline, faces, fill])
+@pytest.mark.parametrize("layer", ["A-DOOR", "WALL", "XYZ"])
+def test_door_over_a_wall_opens_it_as_wide_as_it_swings_and_is_said(
+    wall: Callable[[Modelspace], None], layer: str, tmp_path: Path
+) -> None:
+    document = drawing()
+    wall(document.modelspace())
+    swing(document.modelspace(), layer)
+    plan = plan_of(document, tmp_path)
+    assert in_drawing(plan).equals(WALL.difference(OPENING))
+    (said,) = [finding for finding in plan.findings if finding.code == "door-over-wall"]
+    assert "900 mm wide" in said.message
+    assert said.at_mm == (4000.0, 5200.0)
+
+
+def test_mask_in_the_block_of_a_door_that_swings_opens_no_more_than_the_swing(
+    tmp_path: Path,
+) -> None:
+    document = drawing()
+    outline(document.modelspace())
+    block_with_mask(document)
+    assert in_drawing(plan_of(document, tmp_path)).equals(WALL.difference(OPENING))
+
+
+def test_door_that_slides_opens_the_wall_under_its_mask(tmp_path: Path) -> None:
+    document = drawing()
+    outline(document.modelspace())
+    block = document.blocks.new("Door sliding")
+    block.add_wipeout([(4000, 4950), (5000, 4950), (5000, 5250), (4000, 5250)])
+    block.add_line((4000, 5100), (4500, 5100))
+    document.modelspace().add_blockref("Door sliding", (0, 0))
+    plan = plan_of(document, tmp_path)
+    assert in_drawing(plan).equals(WALL.difference(box(4000, 5000, 5000, 5200)))
+
+
+def test_mask_of_anything_but_a_door_opens_nothing(tmp_path: Path) -> None:
+    document = drawing()
+    outline(document.modelspace())
+    corners = [(4000, 4950), (5000, 4950), (5000, 5250), (4000, 5250)]
+    document.modelspace().add_wipeout(corners, dxfattribs=ON_WALL)
+    assert in_drawing(plan_of(document, tmp_path)).equals(WALL)
+
+
+@pytest.mark.parametrize("turn_deg", [37.0, 180.0])
+@pytest.mark.parametrize("x_scale", [1.0, -1.0])
+def test_turned_and_mirrored_the_same_opening_is_cut(
+    turn_deg: float, x_scale: float, tmp_path: Path
+) -> None:
+    document = drawing()
+    outline(document.modelspace())
+    swing(document.modelspace(), "A-DOOR", open_deg=45.0)
+    matrix = Matrix44.scale(x_scale, 1, 1) @ Matrix44.z_rotate(math.radians(turn_deg))
+    transform.inplace(document.modelspace(), matrix)
+    plan = plan_of(document, tmp_path)
+    # corners are kept to 1e-5 mm
+    left_mm2 = WALL.area - OPENING.area
+    assert plan.obstacle_region().area == pytest.approx(left_mm2, rel=1e-6)
+
+
+def test_line_of_a_wall_without_thickness_is_cut_at_a_door(tmp_path: Path) -> None:
+    document = drawing()
+    document.modelspace().add_line((0, 5200), (10_000, 5200), dxfattribs=ON_WALL)
+    swing(document.modelspace(), "A-DOOR")
+    lines = [obstacle.shape for obstacle in standing(plan_of(document, tmp_path), "WALL")]
+    assert lines == [
+        LineString([(0, 5200), (4000, 5200)]),
+        LineString([(4900, 5200), (10_000, 5200)]),
+    ]
+
+
+def test_threshold_on_the_layer_of_doors_and_windows_is_no_obstacle(tmp_path: Path) -> None:
+    document = drawing()
+    space = document.modelspace()
+    rectangle(space, 0, 5000, 4000, 5200, layer="WALL")
+    rectangle(space, 4900, 5000, 10_000, 5200, layer="WALL")
+    rectangle(space, *OPENING.bounds, layer="MENUISERIES")
+    swing(space, "MENUISERIES")
+    assert in_drawing(plan_of(document, tmp_path)).equals(WALL.difference(OPENING))
+
+
+@pytest.mark.parametrize("shut_deg", [0.0, 180.0])
+def test_door_in_an_opening_that_is_drawn_cuts_nothing_whichever_way_its_symbol_lies(
+    shut_deg: float, tmp_path: Path
+) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 0, 5000, 4000, 5200, layer="WALL")
+    rectangle(document.modelspace(), 4900, 5000, 10_000, 5200, layer="WALL")
+    swing(document.modelspace(), "A-DOOR", shut_deg=shut_deg)
+    plan = plan_of(document, tmp_path)
+    assert in_drawing(plan).equals(WALL.difference(OPENING))
+    assert not {"door-over-wall", "door-in-wall"} & set(codes(plan))
+
+
+def test_door_over_a_wall_of_two_thicknesses_stays_closed_and_is_said(tmp_path: Path) -> None:
+    document = drawing()
+    outline(document.modelspace())
+    rectangle(document.modelspace(), 4300, 4700, 10_000, 5000, layer="WALL")
+    swing(document.modelspace(), "A-DOOR")
+    plan = plan_of(document, tmp_path)
+    assert in_drawing(plan).equals(WALL.union(box(4300, 4700, 10_000, 5000)))
+    assert "door-in-wall" in codes(plan)
+
+
+def test_door_away_from_any_wall_cuts_nothing_and_nothing_is_said(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 0, 8000, 10_000, 8200, layer="WALL")
+    swing(document.modelspace(), "A-DOOR")
+    plan = plan_of(document, tmp_path)
+    assert plan.obstacle_region().area == 10_000 * 200
+    assert plan.findings == ()
