@@ -1,7 +1,8 @@
 """Shapes of the plan as entities of model space, in drawing units."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import Final
 
 import numpy as np
@@ -30,13 +31,14 @@ def begun_on_a_straight(vertices: FloatArray) -> FloatArray:
     where vertices crowd, it ends too early, and what follows joins the next loop: a wedge of the
     fill is missing. A loop of arcs alone stays as it is.
     """
-    begins, ends = vertices[:, :2], np.roll(vertices[:, :2], -1, axis=0)
-    lengths = np.where(vertices[:, 2] == 0, np.hypot(*(ends - begins).T), 0.0)
+    begins, bulges = vertices[:, :2], vertices[:, 2]
+    ends = np.concatenate((begins[1:], begins[:1]))
+    lengths = np.where(bulges == 0, np.hypot(*(ends - begins).T), 0.0)
     longest = int(lengths.argmax())
     if lengths[longest] == 0:
         return vertices
     middle = (*((begins[longest] + ends[longest]) / 2), 0.0)
-    return np.vstack((middle, np.roll(vertices, -longest - 1, axis=0)))
+    return np.concatenate(([middle], vertices[longest + 1 :], vertices[: longest + 1]))
 
 
 def outline_of(polygon: Polygon) -> Outline:
@@ -64,7 +66,8 @@ class _Points(LWPolylinePoints):
     def from_vertices(cls, vertices: FloatArray) -> "_Points":
         """Vertices with bulges, shape (n, 3), as points without a width."""
         points = cls()
-        points.set(np.column_stack((vertices[:, :2], np.zeros((len(vertices), 2)), vertices[:, 2])))
+        points.values = np.zeros((len(vertices), cls.VERTEX_SIZE))
+        points.values[:, :2], points.values[:, -1] = vertices[:, :2], vertices[:, 2]
         return points
 
     def dxftags(self) -> Iterator[DXFTag]:
@@ -122,38 +125,55 @@ class Pen:
         points_mm = np.asarray(points_mm, dtype=np.float64)[:, :2]
         if len(points_mm) > 3 and np.array_equal(points_mm[0], points_mm[-1]):
             return self.ring(points_mm)
-        return self._polyline(_straight(points_mm), close=False)
+        return self._polylines([_straight(points_mm)], close=False)[0]
 
     def ring(self, points_mm: npt.ArrayLike) -> DXFGraphic:
         """A closed polyline of straight lines; the last point repeats the first, as in shapely."""
         points_mm = np.asarray(points_mm, dtype=np.float64)[:-1, :2]
-        return self._polyline(_straight(points_mm), close=True)
+        return self._polylines([_straight(points_mm)], close=True)[0]
 
     def loop(self, loop: Loop) -> DXFGraphic:
         """A closed polyline with true arcs."""
-        return self._polyline(loop.vertices, close=True)
+        return self.loops([loop])[0]
+
+    def loops(self, loops: Sequence[Loop]) -> list[DXFGraphic]:
+        """Closed polylines with true arcs."""
+        return self._polylines([loop.vertices for loop in loops], close=True)
 
     def fill(self, outline: Outline) -> Hatch:
         """A solid hatch of one connected part with its holes, bounded by true arcs."""
         hatch = self.space.add_hatch(color=self.colour, dxfattribs=self._attributes())
-        for loop, flags in (
-            (outline.exterior, BOUNDARY_PATH_EXTERNAL),
-            *((hole, BOUNDARY_PATH_OUTERMOST) for hole in outline.holes),
+        exterior, *holes = self._in_drawing(
+            [loop.vertices for loop in (outline.exterior, *outline.holes)]
+        )
+        for vertices, flags in (
+            (exterior, BOUNDARY_PATH_EXTERNAL),
+            *((hole, BOUNDARY_PATH_OUTERMOST) for hole in holes),
         ):
-            vertices = begun_on_a_straight(self._in_drawing(loop.vertices))
             # plain numbers, which the library takes one by one
-            hatch.paths.add_polyline_path(vertices.tolist(), flags=flags)
+            points = begun_on_a_straight(vertices).tolist()
+            hatch.paths.add_polyline_path(points, flags=flags)
         return hatch
 
-    def _polyline(self, vertices: FloatArray, *, close: bool) -> DXFGraphic:
-        """A polyline of vertices with bulges, shape (n, 3), in millimetres."""
-        polyline = self.space.add_lwpolyline([], close=close, dxfattribs=self._attributes())
-        polyline.lwpoints = _Points.from_vertices(self._in_drawing(vertices))
-        return polyline
+    def _polylines(self, chains: Sequence[FloatArray], *, close: bool) -> list[DXFGraphic]:
+        """Polylines of vertices with bulges, each of shape (n, 3), in millimetres."""
+        attributes = self._attributes()
+        polylines: list[DXFGraphic] = []
+        for vertices in self._in_drawing(chains):
+            polyline = self.space.add_lwpolyline([], close=close, dxfattribs=attributes)
+            polyline.lwpoints = _Points.from_vertices(vertices)
+            polylines.append(polyline)
+        return polylines
 
-    def _in_drawing(self, vertices: FloatArray) -> FloatArray:
-        """Vertices in drawing units, shape (n, 3); a similarity leaves the bulges as they are."""
-        return np.column_stack((self.frame.to_drawing(vertices[:, :2]), vertices[:, 2]))
+    def _in_drawing(self, chains: Sequence[FloatArray]) -> list[FloatArray]:
+        """Vertices, each of shape (n, 3), in drawing units; a similarity leaves bulges as they are.
+
+        All are turned at once: they may be many, most of them of a few vertices.
+        """
+        vertices = np.concatenate((np.empty((0, 3)), *chains))
+        vertices[:, :2] = self.frame.to_drawing(vertices[:, :2])
+        ends = accumulate(map(len, chains))
+        return [vertices[end - len(chain) : end] for end, chain in zip(ends, chains, strict=True)]
 
     def _attributes(self) -> dict[str, str | int]:
         return {"layer": self.layer, "color": self.colour}

@@ -56,8 +56,8 @@ def draw_area(space: Modelspace, result: Result) -> list[DXFGraphic]:
             "robot": result.robot.name,
         }
         hatches.append(_filled(space, result, AOI, outline, facts))
-        for loop in (outline.exterior, *outline.holes):
-            attach(edge_pen.loop(loop), {"part": number})
+        for edge in edge_pen.loops([outline.exterior, *outline.holes]):
+            attach(edge, {"part": number})
     return hatches
 
 
@@ -97,11 +97,15 @@ def draw_unreached(space: Modelspace, result: Result, letter: float) -> list[DXF
 def draw_zones(space: Modelspace, result: Result) -> None:
     """Draw the outline of what each set-down can trowel."""
     pen = Pen(space, result.plan.frame, ZONE.name)
-    for number, zone in enumerate(result.zones, start=1):
-        facts = {"zone": number, "area_m2": zone.area_mm2 / MM2_PER_M2}
-        for outline in zone.outlines:
-            for loop in (outline.exterior, *outline.holes):
-                attach(pen.loop(loop), facts)
+    loops = [
+        (figures, loop)
+        for zone, figures in zip(result.zones, result.report.zones, strict=True)
+        for outline in zone.outlines
+        for loop in (outline.exterior, *outline.holes)
+    ]
+    edges = pen.loops([loop for _, loop in loops])
+    for (figures, _), edge in zip(loops, edges, strict=True):
+        attach(edge, {"zone": figures.number, "area_m2": figures.area_m2})
 
 
 def draw_start(space: Modelspace, result: Result) -> None:
