@@ -6,9 +6,10 @@ step² / 8R high: 0.036 mm for the prototype. The *clean* outline draws them as 
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -38,18 +39,8 @@ class Loop:
 
     def area_mm2(self) -> float:
         """Area enclosed, positive when the loop runs counter-clockwise; arcs count exactly."""
-        # from the first vertex, so that coordinates far from the origin cost no digits, and the
-        # line back to it no area
-        x_mm, y_mm = (self.vertices[:, :2] - self.vertices[0, :2]).T
-        crosses_mm2 = x_mm[:-1] * y_mm[1:] - x_mm[1:] * y_mm[:-1]
-        begins = np.flatnonzero(self.vertices[:, 2])
-        ends = (begins + 1) % x_mm.size
-        chords_mm = np.hypot(x_mm[ends] - x_mm[begins], y_mm[ends] - y_mm[begins])
-        angles_rad = 4 * np.arctan(self.vertices[begins, 2])
-        # of both signs, squared below
-        radii_mm = chords_mm / (2 * np.sin(angles_rad / 2))
-        segments_mm2 = radii_mm**2 * (angles_rad - np.sin(angles_rad)) / 2
-        return float(crosses_mm2.sum() / 2 + segments_mm2.sum())
+        (area_mm2,) = _areas_mm2(self.vertices, np.array([0, len(self.vertices)]))
+        return area_mm2
 
     def points_mm(self, sagitta_mm: float) -> FloatArray:
         """Corners of a polygon on the loop, shape (m, 2).
@@ -152,22 +143,19 @@ class Aoi:
     Attributes:
         cells: The cells whose centre lies within R, included, of a reached node.
         outlines: Its connected parts in the plan's frame, largest first.
+        area_mm2: Area inside the outlines.
         raster_area_mm2: Area of the cells of the raster.
     """
 
     cells: Nodes
     outlines: tuple[Outline, ...]
+    area_mm2: float
     raster_area_mm2: float
 
     @property
     def raster(self) -> BoolArray:
         """Whether each cell is one of them, shape (n_rows, n_columns)."""
         return self.cells.as_array()
-
-    @property
-    def area_mm2(self) -> float:
-        """Area inside the outlines."""
-        return sum(outline.area_mm2() for outline in self.outlines)
 
 
 def area(reached: Nodes, lattice: Lattice, disc_radius_mm: float, *, exact: bool = False) -> Aoi:
@@ -208,16 +196,23 @@ def areas(
     cells = stack.parted(covered_cells(stack.nodes, disc_radius_mm / step_mm), windows)
     outlines = _outlines_of(stack, windows, disc_radius_mm, exact=exact)
     return [
-        Aoi(covered, parts, covered.count() * step_mm**2)
-        for covered, parts in zip(cells, outlines, strict=True)
+        Aoi(covered, parts, area_mm2, covered.count() * step_mm**2)
+        for covered, (parts, area_mm2) in zip(cells, outlines, strict=True)
     ]
 
 
 def outlines_of(reached: Nodes, lattice: Lattice, disc_radius_mm: float) -> tuple[Outline, ...]:
     """The outlines of the area alone; see `area`."""
     stack = _Stack.of([reached], disc_radius_mm / lattice.step_mm)
-    (outlines,) = _outlines_of(stack, [lattice], disc_radius_mm, exact=False)
+    ((outlines, _),) = _outlines_of(stack, [lattice], disc_radius_mm, exact=False)
     return outlines
+
+
+class _Sized(NamedTuple):
+    """A loop and the area that it encloses, negative for a hole."""
+
+    loop: Loop
+    area_mm2: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,8 +259,8 @@ class _Stack:
 
 def _outlines_of(
     stack: _Stack, windows: Sequence[Lattice], disc_radius_mm: float, *, exact: bool
-) -> list[tuple[Outline, ...]]:
-    """The outlines of the area of each set of a stack."""
+) -> list[tuple[tuple[Outline, ...], float]]:
+    """The outlines of the area of each set of a stack, and the area inside them in mm²."""
     step_mm = windows[0].step_mm
     arcs = boundary(stack.nodes, disc_radius_mm / step_mm)
     owner = np.searchsorted(stack.first_rows, arcs.nodes[:, 1], side="right") - 1
@@ -278,8 +273,8 @@ def _outlines_of(
     loops = arcs.loops
     if not exact:
         vertices, loops = _cleaned(vertices, arcs, disc_radius_mm)
-    owned: list[list[Loop]] = [[] for _ in windows]
-    for loop, number in zip(_split(vertices, loops), owners.tolist(), strict=True):
+    owned: list[list[_Sized]] = [[] for _ in windows]
+    for number, loop in _largest_first(vertices, loops, owners):
         owned[number].append(loop)
     return [_outlines(own) for own in owned]
 
@@ -325,39 +320,83 @@ def _neighbours(loops: IntArray) -> tuple[IntArray, IntArray]:
     return after, before
 
 
-def _split(vertices: FloatArray, loops: IntArray) -> list[Loop]:
-    """The loops, each from its lowest, then leftmost vertex on."""
-    split = []
-    for begin, end in pairwise(loops):
-        chain = vertices[begin:end]
-        lowest = np.lexsort((chain[:, 0], chain[:, 1]))[0]
-        chain = np.roll(chain, -lowest, axis=0)
-        chain.flags.writeable = False
-        split.append(Loop(chain))
-    return split
+def _largest_first(
+    vertices: FloatArray, loops: IntArray, owners: IntArray
+) -> Iterator[tuple[int, _Sized]]:
+    """The loops, each from its lowest, then leftmost vertex on, and their owners.
+
+    They come in the order of size to the square millimetre, then lowest, then leftmost.
+    """
+    begins = loops[:-1]
+    which = np.repeat(np.arange(begins.size), np.diff(loops))
+    lowest = np.lexsort((vertices[:, 0], vertices[:, 1], which))[begins]
+    vertices = vertices[_rolled(loops, lowest)]
+    # those of all loops: a small array each would take more memory than what is in it
+    vertices.flags.writeable = False
+    areas_mm2 = _areas_mm2(vertices, loops)
+    x_mm, y_mm, _ = vertices[begins].T
+    order = np.lexsort((x_mm, y_mm, -np.rint(np.abs(areas_mm2))))
+    spans = list(pairwise(loops.tolist()))
+    for k, owner in zip(order.tolist(), owners[order].tolist(), strict=True):
+        yield owner, _Sized(Loop(vertices[slice(*spans[k])]), areas_mm2[k])
 
 
-def _outlines(loops: list[Loop]) -> tuple[Outline, ...]:
-    """Loops gathered into parts: the counter-clockwise ones with the holes inside them."""
-    sized = sorted(((loop.area_mm2(), loop) for loop in loops), key=_largest_first)
-    exteriors = [loop for area_mm2, loop in sized if area_mm2 > 0]
-    holes = [loop for area_mm2, loop in sized if area_mm2 <= 0]
-    owned: list[list[Loop]] = [[] for _ in exteriors]
+def _rolled(loops: IntArray, firsts: IntArray) -> IntArray:
+    """For each vertex the one to take its place for loops to begin at others, shape (n,)."""
+    n_vertices = np.diff(loops)
+    begin, end = np.repeat(loops[:-1], n_vertices), np.repeat(loops[1:], n_vertices)
+    taken = np.arange(loops[-1]) - begin + np.repeat(firsts, n_vertices)
+    return np.where(taken < end, taken, taken - end + begin)
+
+
+def _areas_mm2(vertices: FloatArray, loops: IntArray) -> list[float]:
+    """The area that each loop encloses, positive when it runs counter-clockwise.
+
+    Args:
+        vertices: Those of all loops, see `Loop`.
+        loops: Where each begins, and where the last one ends.
+    """
+    # from the first vertex, so that coordinates far from the origin cost no digits, and the line
+    # back to it no area
+    origins_mm = np.repeat(vertices[loops[:-1], :2], np.diff(loops), axis=0)
+    x_mm, y_mm = (vertices[:, :2] - origins_mm).T
+    crosses_mm2 = x_mm[:-1] * y_mm[1:] - x_mm[1:] * y_mm[:-1]
+    begins = np.flatnonzero(vertices[:, 2])
+    after, _ = _neighbours(loops)
+    ends = after[begins]
+    chords_mm = np.hypot(x_mm[ends] - x_mm[begins], y_mm[ends] - y_mm[begins])
+    angles_rad = 4 * np.arctan(vertices[begins, 2])
+    # of both signs, squared below
+    radii_mm = chords_mm / (2 * np.sin(angles_rad / 2))
+    segments_mm2 = radii_mm**2 * (angles_rad - np.sin(angles_rad)) / 2
+    first_arcs = np.searchsorted(begins, loops)
+    return [
+        float(crosses_mm2[begin : end - 1].sum() / 2 + segments_mm2[first:beyond].sum())
+        for (begin, end), (first, beyond) in zip(
+            pairwise(loops.tolist()), pairwise(first_arcs.tolist()), strict=True
+        )
+    ]
+
+
+def _outlines(loops: list[_Sized]) -> tuple[tuple[Outline, ...], float]:
+    """Loops gathered into parts, the counter-clockwise ones with the holes inside; their area."""
+    exteriors = [loop for loop in loops if loop.area_mm2 > 0]
+    holes = [loop for loop in loops if loop.area_mm2 <= 0]
+    owned: list[list[_Sized]] = [[] for _ in exteriors]
     for hole, owner in zip(holes, _owners(exteriors, holes), strict=True):
         owned[owner].append(hole)
-    return tuple(
-        Outline(exterior, tuple(inside)) for exterior, inside in zip(exteriors, owned, strict=True)
+    outlines = tuple(
+        Outline(exterior.loop, tuple(hole.loop for hole in inside))
+        for exterior, inside in zip(exteriors, owned, strict=True)
     )
+    area_mm2 = sum(
+        exterior.area_mm2 + sum(hole.area_mm2 for hole in inside)
+        for exterior, inside in zip(exteriors, owned, strict=True)
+    )
+    return outlines, area_mm2
 
 
-def _largest_first(sized: tuple[float, Loop]) -> tuple[int, float, float]:
-    """Sorting key of a loop: size to the square millimetre, then lowest, then leftmost."""
-    area_mm2, loop = sized
-    x_mm, y_mm, _ = loop.vertices[0]
-    return -round(abs(area_mm2)), float(y_mm), float(x_mm)
-
-
-def _owners(exteriors: list[Loop], holes: list[Loop]) -> IntArray:
+def _owners(exteriors: list[_Sized], holes: list[_Sized]) -> IntArray:
     """Index of the exterior that each hole lies in; exteriors ordered largest first.
 
     The smallest that is larger than the hole and contains a point of it: loops may touch but do
@@ -368,12 +407,13 @@ def _owners(exteriors: list[Loop], holes: list[Loop]) -> IntArray:
         return owners
     sagitta_mm = 0.01
     tree = shapely.STRtree(
-        [Polygon(hole.points_mm(sagitta_mm)).representative_point() for hole in holes]
+        [Polygon(hole.loop.points_mm(sagitta_mm)).representative_point() for hole in holes]
     )
-    hole_areas_mm2 = np.array([-hole.area_mm2() for hole in holes])
+    hole_areas_mm2 = np.array([-hole.area_mm2 for hole in holes])
     for index, exterior in enumerate(exteriors):
-        inside = tree.query(Polygon(exterior.points_mm(sagitta_mm)), predicate="contains")
-        owners[inside[hole_areas_mm2[inside] < exterior.area_mm2()]] = index
+        polygon = Polygon(exterior.loop.points_mm(sagitta_mm))
+        inside = tree.query(polygon, predicate="contains")
+        owners[inside[hole_areas_mm2[inside] < exterior.area_mm2]] = index
     return owners
 
 

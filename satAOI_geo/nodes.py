@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from satAOI_geo.kernels import helper
 from satAOI_geo.lattice import WORD_BITS, Words
 from satAOI_geo.plan import BoolArray
 
@@ -83,3 +84,14 @@ def from_below(words: Words) -> Words:
     shifted = np.zeros_like(words)
     shifted[1:] = words[:-1]
     return shifted
+
+
+@helper
+def n_bits(bits: np.uint64) -> int:
+    """Number of set bits, summed in pairs, nibbles and octets."""
+    bits -= bits >> np.uint64(1) & np.uint64(0x5555555555555555)
+    bits = (bits & np.uint64(0x3333333333333333)) + (
+        bits >> np.uint64(2) & np.uint64(0x3333333333333333)
+    )
+    bits = bits + (bits >> np.uint64(4)) & np.uint64(0x0F0F0F0F0F0F0F0F)
+    return int(bits * np.uint64(0x0101010101010101) >> np.uint64(56))

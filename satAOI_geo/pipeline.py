@@ -98,7 +98,8 @@ def area_of_interest(
     def of_zones() -> tuple[tuple[Zone, ...], tuple[SetDown, ...]]:
         with watch.stage("zones") as share:
             of_components = zones(found.pose, lattice, disc_mm, known, share)
-            return of_components, set_downs(found.pose, found.free, lattice, disc_mm)
+            states = {zone.label: zone.set_down for zone in of_components}
+            return of_components, set_downs(found.pose, found.free, lattice, disc_mm, states)
 
     def of_patches() -> tuple[Patch, ...]:
         with watch.stage("reasons") as share:

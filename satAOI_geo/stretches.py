@@ -65,6 +65,21 @@ class Stretches:
         paint(words, self.row[own] - rows.start, self.begin[own] - left, self.end[own] - left)
         return Nodes(words, len(columns))
 
+    def deepest(self, labels: IntArray, n_columns: int) -> IntArray:
+        """The first node that is in the middle of the largest square of nodes, of some sets each.
+
+        Args:
+            labels: The sets.
+            n_columns: Columns of the lattice.
+
+        Returns:
+            Row and column of each node, shape (n, 2).
+        """
+        found = np.empty((labels.size, 2), dtype=np.int64)
+        room = np.empty((2, n_columns + 1), dtype=np.int32)
+        _deepest(self.first, self.row, self.begin, self.end, labels, room, found)
+        return found
+
 
 def merged(
     labels: Int32Array, row: Int32Array, begin: Int32Array, end: Int32Array
@@ -180,3 +195,62 @@ def _take_off(nodes: Words, label: int, row: int, stretches: Int32Array, n: int)
     if carry:
         stretches[n_ended, 3] = nodes.size * 64 - 1
     return n_begun
+
+
+@kernel(
+    "void(const int64[:], const int32[:], const int32[:], const int32[:], const int64[:], "
+    "int32[:, :], int64[:, :])"
+)
+def _deepest(
+    first: IntArray,
+    row: Int32Array,
+    begin: Int32Array,
+    end: Int32Array,
+    labels: IntArray,
+    room: Int32Array,
+    found: IntArray,
+) -> None:
+    """Write row and column of the deepest node of each of some sets, see `Stretches.deepest`.
+
+    The largest square whose upper right corner is a given node has a side one longer than the
+    least of those of its left, lower and lower left neighbour. A node is the middle of a square of
+    a side of 2d - 1 when one of that side, or longer, ends d - 1 rows and columns farther: the
+    first of these nodes in the order of rows and columns belongs to the first such corner.
+
+    Args:
+        first: See `Stretches`, as are the next three.
+        row: Of each stretch.
+        begin: Of each stretch.
+        end: Of each stretch.
+        labels: The sets.
+        room: For a row of squares and the row below, shape (2, n_columns + 1); column ix is at
+            ix + 1.
+        found: Shape (n, 2).
+    """
+    for k in range(labels.size):
+        stretch, beyond = first[labels[k]], first[labels[k] + 1]
+        left, right = _columns(begin, end, stretch, beyond)
+        room[:, left : right + 2] = 0
+        depth = 0
+        iy = row[stretch]
+        while stretch < beyond:
+            below, here = room[(iy + 1) & 1], room[iy & 1]
+            here[left : right + 2] = 0
+            while stretch < beyond and row[stretch] == iy:
+                for ix in range(begin[stretch], end[stretch] + 1):
+                    side = min(here[ix], below[ix], below[ix + 1]) + 1
+                    here[ix + 1] = side
+                    if (side + 1) >> 1 > depth:
+                        depth = (side + 1) >> 1
+                        found[k, 0], found[k, 1] = iy - depth + 1, ix - depth + 1
+                stretch += 1
+            iy += 1
+
+
+@helper
+def _columns(begin: Int32Array, end: Int32Array, first: int, beyond: int) -> tuple[int, int]:
+    """Least and greatest column of the stretches from first up to, not including, beyond."""
+    left, right = begin[first], end[first]
+    for stretch in range(first + 1, beyond):
+        left, right = min(left, begin[stretch]), max(right, end[stretch])
+    return left, right

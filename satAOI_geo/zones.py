@@ -1,6 +1,5 @@
 """Zones: what each set-down of the robot can trowel, and how few set-downs are enough."""
 
-import heapq
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -11,11 +10,11 @@ import numpy.typing as npt
 
 from satAOI_geo.aoi import Aoi, Outline, areas
 from satAOI_geo.discs import covered_cells
-from satAOI_geo.kernels import kernel
-from satAOI_geo.lattice import WORD_BITS, Lattice
+from satAOI_geo.kernels import helper, kernel
+from satAOI_geo.lattice import WORD_BITS, Lattice, Words
 from satAOI_geo.memory import give_back
-from satAOI_geo.nodes import Nodes
-from satAOI_geo.plan import BoolArray
+from satAOI_geo.nodes import Nodes, n_bits
+from satAOI_geo.plan import FloatArray, IntArray
 from satAOI_geo.reach import PoseComponents, State
 from satAOI_geo.runs import Int32Array
 
@@ -46,6 +45,7 @@ class Zone:
         label: Number of the component.
         n_nodes: Nodes at which it has some pose.
         outlines: The connected parts of what the disc covers, largest first.
+        area_mm2: Area inside the outlines.
         raster_area_mm2: Area of the cells that it covers.
         set_down: A state to set the robot down at, well inside.
     """
@@ -53,13 +53,9 @@ class Zone:
     label: int
     n_nodes: int
     outlines: tuple[Outline, ...]
+    area_mm2: float
     raster_area_mm2: float
     set_down: State
-
-    @property
-    def area_mm2(self) -> float:
-        """Area inside the outlines."""
-        return sum(outline.area_mm2() for outline in self.outlines)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,55 +102,88 @@ def zones(
         known: What some of them cover, by their numbers.
         progress: Called with the share of them that is done.
     """
-    found = [
-        Zone(
-            label,
-            components.stretches.count(label),
-            aoi.outlines,
-            aoi.raster_area_mm2,
-            set_down(components, label),
-        )
-        for label, aoi in _covered(components, lattice, disc_mm, known, progress)
-        if aoi.area_mm2 >= ZONE_MM2
-    ]
+    found: list[Zone] = []
+    for covered in _covered(components, lattice, disc_mm, known, progress):
+        large = {label: aoi for label, aoi in covered.items() if aoi.area_mm2 >= ZONE_MM2}
+        states = _set_downs_of(components, list(large))
+        found += [
+            Zone(
+                label,
+                components.stretches.count(label),
+                aoi.outlines,
+                aoi.area_mm2,
+                aoi.raster_area_mm2,
+                state,
+            )
+            for (label, aoi), state in zip(large.items(), states, strict=True)
+        ]
     return tuple(sorted(found, key=lambda zone: (-zone.raster_area_mm2, zone.label)))
 
 
 def set_downs(
-    components: PoseComponents, free: Nodes, lattice: Lattice, disc_mm: float
+    components: PoseComponents,
+    free: Nodes,
+    lattice: Lattice,
+    disc_mm: float,
+    known: Mapping[int, State],
 ) -> tuple[SetDown, ...]:
     """Set-downs whose areas together cover what any pose can trowel, the greatest gain first.
 
-    Greedy: each covers the most cells not covered yet. Gains only shrink as more is covered, so a
-    stale gain is an upper bound and need only be looked at again when it comes first.
+    Greedy: each covers the most cells not covered yet.
+
+    Args:
+        components: The components.
+        free: Nodes at which some pose is free.
+        lattice: Nodes and directions.
+        disc_mm: Radius of the disc.
+        known: Where the robot is set down for some of them, by their numbers.
     """
     chosen = []
-    todo = covered_cells(free, disc_mm / lattice.step_mm).words
+    radius, cell_mm2 = disc_mm / lattice.step_mm, lattice.step_mm**2
+    todo = covered_cells(free, radius).words
     bounds_mm2 = _area_bounds_mm2(components.boxes, disc_mm, lattice.step_mm)
-    queue = [(-bound, label, False) for label, bound in enumerate(bounds_mm2)]
-    heapq.heapify(queue)
-    while queue:
-        best, label, fresh = heapq.heappop(queue)
+    gains = _Gains.of(components.boxes, bounds_mm2 / cell_mm2)
+    while gains.at_most[label := gains.greatest(todo, radius)] > 0:
         rows, columns = _window(components.boxes[label], lattice, disc_mm)
         here = todo[rows, columns.start // WORD_BITS : -(-columns.stop // WORD_BITS)]
-        # no more than is left to cover in its window: cheaper to count than what it covers
-        left_mm2 = float(np.bitwise_count(here).sum()) * lattice.step_mm**2
-        if left_mm2 == 0.0:
-            continue
-        if left_mm2 < -best:
-            heapq.heappush(queue, (-left_mm2, label, False))
-            continue
-        nodes = components.nodes(label, rows, columns)
-        gained = covered_cells(nodes, disc_mm / lattice.step_mm).words & here
-        gain_mm2 = float(np.bitwise_count(gained).sum()) * lattice.step_mm**2
-        if gain_mm2 == 0.0:
-            continue
-        if fresh and gain_mm2 == -best:
+        gained = covered_cells(components.nodes(label, rows, columns), radius).words & here
+        n_gained = int(np.bitwise_count(gained).sum())
+        gains.at_most[label] = n_gained
+        if n_gained and gains.greatest(todo, radius) == label:
             here &= ~gained
-            chosen.append(SetDown(set_down(components, label), label, gain_mm2))
-        else:
-            heapq.heappush(queue, (-gain_mm2, label, True))
+            gains.at_most[label] = 0
+            state = known.get(label) or set_down(components, label)
+            chosen.append(SetDown(state, label, n_gained * cell_mm2))
     return tuple(chosen)
+
+
+@dataclass(frozen=True, slots=True)
+class _Gains:
+    """What cells each set could gain at most; that only shrinks as more are covered.
+
+    Attributes:
+        boxes: See `Components`.
+        at_most: Shape (n,), of each set; to be lowered where less is known to be left for it.
+        heap: Shape (n,), the sets; neither of those at 2k + 1 and 2k + 2 comes before that at k
+            once all but the first are in order.
+    """
+
+    boxes: npt.NDArray[np.int64]
+    at_most: FloatArray
+    heap: Int32Array
+
+    @classmethod
+    def of(cls, boxes: npt.NDArray[np.int64], at_most: FloatArray) -> "_Gains":
+        """The sets, all in order: the greatest first, of equals that of the lowest number."""
+        return cls(boxes, at_most, np.argsort(-at_most, kind="stable").astype(np.int32))
+
+    def greatest(self, todo: Words, radius: float) -> int:
+        """The set that could gain most of the cells to do, in a window of them a radius wider.
+
+        Of the first set alone the bound may have been lowered since.
+        """
+        _lower(self.heap, self.at_most, self.boxes, math.ceil(radius), todo)
+        return int(self.heap[0])
 
 
 def _covered(
@@ -163,9 +192,9 @@ def _covered(
     disc_mm: float,
     known: Mapping[int, Aoi],
     progress: Callable[[float], None] | None,
-) -> Iterator[tuple[int, Aoi]]:
-    """What each component that may be large enough for a zone covers; see `zones`."""
-    yield from known.items()
+) -> Iterator[Mapping[int, Aoi]]:
+    """What components that may be large enough for a zone cover, some at a time; see `zones`."""
+    yield known
     boxes = components.boxes
     bounds_mm2 = _area_bounds_mm2(boxes, disc_mm, lattice.step_mm)
     labels = np.flatnonzero(bounds_mm2 >= ZONE_MM2)
@@ -178,7 +207,7 @@ def _covered(
             components.nodes(label, *window) for label, window in zip(batch, windows, strict=True)
         ]
         covered = areas(sets, [lattice.window(*window) for window in windows], disc_mm)
-        yield from zip(batch, covered, strict=True)
+        yield dict(zip(batch, covered, strict=True))
         n_done += len(batch)
         if progress is not None:
             progress(n_done / labels.size)
@@ -203,46 +232,80 @@ def _batches(boxes: npt.NDArray[np.int64], labels: list[int]) -> Iterator[list[i
 
 def set_down(components: PoseComponents, label: int) -> State:
     """The state deepest inside a component's nodes, arm as straight as possible."""
-    rows, columns = (slice(int(a), int(b) + 1) for a, b in components.boxes[label].reshape(2, 2).T)
-    iy, ix = _deepest(components.nodes(label, rows, columns).as_array())
-    return components.straightest(iy + rows.start, ix + columns.start, label)
+    (state,) = _set_downs_of(components, [label])
+    return state
 
 
-def _deepest(nodes: BoolArray) -> tuple[int, int]:
-    """The first of the nodes that are in the middle of the largest square of nodes."""
-    n_rows, n_columns = nodes.shape
-    # a rim of no nodes
-    depth = np.zeros((n_rows + 2, n_columns + 2), dtype=np.int32)
-    iy, ix = divmod(_deepest_place(nodes, depth), n_columns)
-    return iy, ix
+def _set_downs_of(components: PoseComponents, labels: list[int]) -> list[State]:
+    """Where the robot is set down for each of some components, see `set_down`."""
+    deepest = components.stretches.deepest(np.array(labels), components.lattice.n_columns)
+    return [
+        components.straightest(iy, ix, label)
+        for (iy, ix), label in zip(deepest.tolist(), labels, strict=True)
+    ]
 
 
-@kernel("int64(const bool[:, :], int32[:, :])")
-def _deepest_place(nodes: BoolArray, depth: Int32Array) -> int:
-    """The first of the deepest nodes, as row · columns + column; see `_deepest`.
+@kernel("void(int32[:], float64[:], const int64[:, :], int64, const uint64[:, :])")
+def _lower(
+    heap: Int32Array, at_most: FloatArray, boxes: IntArray, margin: int, todo: Words
+) -> None:
+    """Lower bounds until the first set's is no more than what is left around its box.
 
-    The depth of a node is how many rings of nodes are around it, and one more. From the four
-    neighbours before it in the raster's order, and from the four after it, it is one more at most.
+    To count that is cheaper than to count what it covers.
 
     Args:
-        nodes: Shape (n_rows, n_columns).
-        depth: 0 at each of them and at a rim around them.
+        heap: See `_Gains`, as are the next two.
+        at_most: Of each set.
+        boxes: Of each set.
+        margin: How far around a box its set covers cells.
+        todo: The cells that are left.
     """
-    n_rows, n_columns = nodes.shape
-    for iy in range(1, n_rows + 1):
-        for ix in range(1, n_columns + 1):
-            if nodes[iy - 1, ix - 1]:
-                above = min(depth[iy - 1, ix - 1], depth[iy - 1, ix], depth[iy - 1, ix + 1])
-                depth[iy, ix] = min(above, depth[iy, ix - 1]) + 1
-    best, best_iy, best_ix = 0, 0, 0
-    for iy in range(n_rows, 0, -1):
-        for ix in range(n_columns, 0, -1):
-            below = min(depth[iy + 1, ix - 1], depth[iy + 1, ix], depth[iy + 1, ix + 1])
-            depth[iy, ix] = min(depth[iy, ix], min(below, depth[iy, ix + 1]) + 1)
-            if depth[iy, ix] >= best:
-                best, best_iy, best_ix = depth[iy, ix], iy, ix
-    place: int = (best_iy - 1) * n_columns + best_ix - 1
-    return place
+    _sink(heap, at_most)
+    while at_most[heap[0]] > 0:
+        left = _n_in_box(todo, boxes[heap[0]], margin)
+        if left >= at_most[heap[0]]:
+            return
+        at_most[heap[0]] = left
+        _sink(heap, at_most)
+
+
+@helper
+def _sink(heap: Int32Array, at_most: FloatArray) -> None:
+    """Put the first set in its place."""
+    place = 0
+    while True:
+        child = 2 * place + 1
+        if child + 1 < heap.size and _comes_before(at_most, heap[child + 1], heap[child]):
+            child += 1
+        if child >= heap.size or not _comes_before(at_most, heap[child], heap[place]):
+            return
+        heap[place], heap[child] = heap[child], heap[place]
+        place = child
+
+
+@helper
+def _comes_before(at_most: FloatArray, label: int, other: int) -> bool:
+    """Whether a set could gain more than another, or as much and has the lower number."""
+    more: bool = at_most[label] > at_most[other]
+    return more or (at_most[label] == at_most[other] and label < other)
+
+
+@helper
+def _n_in_box(cells: Words, box: IntArray, margin: int) -> int:
+    """How many cells there are in a box and around it."""
+    every = np.uint64(0xFFFFFFFFFFFFFFFF)
+    left, right = max(0, box[1] - margin), min(64 * cells.shape[1] - 1, box[3] + margin)
+    first_word, last_word = left >> 6, right >> 6
+    n = 0
+    for iy in range(max(0, box[0] - margin), min(cells.shape[0], box[2] + margin + 1)):
+        for word in range(first_word, last_word + 1):
+            bits = cells[iy, word]
+            if word == first_word:
+                bits &= every << np.uint64(left & 63)
+            if word == last_word:
+                bits &= every >> np.uint64(63 - (right & 63))
+            n += n_bits(bits)
+    return n
 
 
 def _area_mm2(components: Components, label: int, lattice: Lattice, disc_mm: float) -> float:

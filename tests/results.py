@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from shapely.geometry import LineString, Polygon, box
 
-from satAOI_geo.aoi import Aoi, Loop, Outline
+from satAOI_geo.aoi import Loop, Outline
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import Circle, FloorPlan, Frame, Kind, Obstacle, Source
 from satAOI_geo.settings import Settings
@@ -72,7 +72,8 @@ def rounded_rectangle(width_mm: float, height_mm: float, radius_mm: float) -> Lo
 
 def with_parts(result: Result, outlines: tuple[Outline, ...]) -> Result:
     """The same result with another area, as far as a writer looks at it."""
-    aoi = Aoi(result.aoi.cells, outlines, result.aoi.raster_area_mm2)
+    area_mm2 = sum(outline.area_mm2() for outline in outlines)
+    aoi = replace(result.aoi, outlines=outlines, area_mm2=area_mm2)
     return replace(result, aoi=aoi)
 
 

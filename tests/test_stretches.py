@@ -1,13 +1,16 @@
 """The nodes of sets of runs, as stretches of rows."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from satAOI_geo.nodes import Nodes
+from satAOI_geo.plan import BoolArray
 from satAOI_geo.runs import Runs, SliceRuns, rows_of
-from satAOI_geo.stretches import merged, of_runs
+from satAOI_geo.stretches import Stretches, merged, of_runs
 
 N_ROWS = 3
 
@@ -55,3 +58,42 @@ def test_no_runs_have_no_stretches(n_poses: int) -> None:
         Runs.joined([none] * n_poses, (1, n_poses, N_ROWS)), np.empty(0, dtype=np.int32), 0
     )
     assert [column.size for column in found] == [0, 0, 0, 0]
+
+
+def stretches_of(sets: list[BoolArray]) -> Stretches:
+    """The stretches of some sets, given as rasters."""
+    parts = []
+    for label, nodes in enumerate(sets):
+        rows = rows_of(Nodes.of(nodes))
+        row = np.repeat(np.arange(len(nodes)), np.diff(rows.first))
+        parts.append((np.full(row.size, label), row, rows.begin, rows.end))
+    columns = (np.concatenate(part).astype(np.int32) for part in zip(*parts, strict=True))
+    return Stretches.of(*columns, n_sets=len(sets))
+
+
+def middle_of_largest_square(nodes: BoolArray) -> tuple[int, int]:
+    """The first node that the most rings of nodes are around, looked at one by one."""
+
+    def n_rings(iy: int, ix: int) -> int:
+        most = min(iy, ix, nodes.shape[0] - 1 - iy, nodes.shape[1] - 1 - ix)
+        squares = (nodes[iy - k : iy + k + 1, ix - k : ix + k + 1] for k in range(most + 1))
+        return sum(itertools.takewhile(bool, (bool(square.all()) for square in squares)))
+
+    places = [(iy, ix) for iy, ix in np.argwhere(nodes).tolist()]
+    return max(places, key=lambda place: n_rings(*place))
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.1, 0.6, 0.9, 0.98, 1.0]))
+def test_deepest_node_is_the_first_with_the_most_rings_of_nodes_around_it(
+    seed: int, share: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    shape = rng.integers(1, 20, 2)
+    sets = [rng.random(shape) < share for _ in range(3)]
+    for nodes in sets:
+        nodes[tuple(rng.integers(0, shape))] = True
+    labels = np.array([2, 0, 1])
+    deepest = stretches_of(sets).deepest(labels, int(shape[1]))
+    assert [tuple(place) for place in deepest.tolist()] == [
+        middle_of_largest_square(sets[label]) for label in labels
+    ]

@@ -81,6 +81,22 @@ def test_set_downs_together_cover_what_any_pose_can(seed: int) -> None:
     assert gains_mm2 == sorted(gains_mm2, reverse=True)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_no_component_adds_more_than_the_set_down_that_is_next(seed: int) -> None:
+    found = result(seed)
+    pose, cell_mm2 = found.search.pose, found.lattice.step_mm**2
+    radius = found.robot.disc_radius_mm / found.lattice.step_mm
+    covers = [covered_cells(pose.nodes(label), radius).words for label in range(len(pose.boxes))]
+    todo = covered_cells(found.search.free, radius).words
+    for one in found.set_downs:
+        gains = [int(np.bitwise_count(cells & todo).sum()) for cells in covers]
+        # of equal gains that of the lowest number
+        assert (one.label, one.gain_mm2) == (gains.index(max(gains)), max(gains) * cell_mm2)
+        assert pose.at(*one.state) == one.label
+        todo = todo & ~covers[one.label]
+    assert not todo.any()
+
+
 def test_without_a_start_the_largest_zone_is_taken() -> None:
     found = area_of_interest(two_rooms_apart(), settings=SETTINGS)
     assert found.search.start.source == "largest"
