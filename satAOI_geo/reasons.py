@@ -15,22 +15,23 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import reduce
-from typing import Final, NamedTuple, TypeVar
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 import shapely
 from shapely.geometry import Point, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from satAOI_geo.aoi import Aoi, outlines_of
 from satAOI_geo.freespace import run_threads
 from satAOI_geo.memory import give_back
 from satAOI_geo.nodes import Nodes
-from satAOI_geo.plan import FloorPlan, Obstacle, Region, as_region, polygons_in
+from satAOI_geo.plan import FloorPlan, IntArray, Obstacle, Region, as_region, polygons_in
 from satAOI_geo.reach import EVERYTHING
 from satAOI_geo.runs import roots, unite
 from satAOI_geo.search import Search
-from satAOI_geo.tiles import Indexed, Tile, clipped, cuts, region_of
+from satAOI_geo.tiles import FreeFloor, Indexed, Tile, clipped, cuts, region_of
 
 APART_MM: Final = 0.05
 """By how much outlines that run along each other are set apart before they are overlaid. Lines a
@@ -39,8 +40,7 @@ rounding apart cross hundreds of times; what divides one reason from another may
 NARROW_CELLS: Final = 2
 """Between the disc and a wall the lattice leaves strips of up to a cell, askew to it 1.4 cells."""
 
-
-RegionT = TypeVar("RegionT", Polygon, Region)
+Geometries: TypeAlias = npt.NDArray[np.object_]
 
 
 class Reason(StrEnum):
@@ -67,7 +67,9 @@ class Patch:
     """A connected piece of free floor that is not reached, or all strips of it.
 
     Attributes:
-        region: Its shape in the plan's frame.
+        wkb: Its shape as well-known binary, two thirds of what polygons take: a large floor has
+            tens of thousands of patches.
+        area_mm2: Its area.
         reason: Why it is not reached.
         label_mm: A point inside it, for its label.
         narrow: Whether it gathers the strips narrower than `NARROW_CELLS`, which the lattice does
@@ -75,16 +77,18 @@ class Patch:
         blocker: The obstacle nearest to the label where one is in the way, else None.
     """
 
-    region: Region
+    wkb: bytes
+    area_mm2: float
     reason: Reason
     label_mm: tuple[float, float]
     narrow: bool
     blocker: Obstacle | None
 
     @property
-    def area_mm2(self) -> float:
-        """Area of the patch."""
-        return float(self.region.area)
+    def region(self) -> Region:
+        """Its shape in the plan's frame, made anew each time."""
+        made: Region = shapely.from_wkb(self.wkb)
+        return made
 
 
 def unreached(
@@ -105,22 +109,26 @@ def unreached(
         than `NARROW_CELLS`, which finer steps of the disc would cover in part, and crumbs smaller
         than a cell are gathered in one patch a tile, after the others.
     """
-    blockers = _Blockers(found.plan)
-    whole = _Regions(found.plan.free_region(), Indexed(aoi.outlines), Indexed(upper.outlines))
-    pieces: list[_Piece] = []
+    obstacles = [obstacle.region() for obstacle in found.plan.obstacles]
+    blockers = _Blockers(found.plan, obstacles)
+    free = FreeFloor(found.plan.floor, obstacles)
+    whole = _Regions(free, Indexed(aoi.outlines), Indexed(upper.outlines))
+    patches: list[Patch] = []
     narrow: list[Patch] = []
+    at_seams: list[_Piece] = []
     row_cuts = cuts(found.lattice.n_rows)
     for number, cut in enumerate(row_cuts, start=1):
         row = _TileRow.of(found, cut, whole)
-        for of_tile, strips in run_threads(row.left_over, len(row.tiles)):
-            pieces += of_tile
+        for pieces, strips in run_threads(row.left_over, len(row.tiles)):
+            patches += [blockers.patch(one.region, one.reason) for one in pieces if not one.at_seam]
+            at_seams += [one for one in pieces if one.at_seam]
             if strips.area > 0:
                 narrow.append(blockers.patch(strips, Reason.DISC, narrow=True))
         if progress is not None:
             progress(number / len(row_cuts))
         if len(row_cuts) > 1:
             give_back()
-    patches = [blockers.patch(region, reason) for reason, region in _joined(pieces)]
+    patches += [blockers.patch(region, reason) for reason, region in _joined(at_seams)]
     return (*sorted(patches, key=_largest_first), *sorted(narrow, key=_largest_first))
 
 
@@ -135,7 +143,7 @@ class _Piece(NamedTuple):
 class _Regions(NamedTuple):
     """The free floor, the area of interest, and the area disc-connected with the start."""
 
-    free: Region
+    free: FreeFloor
     aoi: Indexed
     upper: Indexed
 
@@ -166,33 +174,39 @@ class _TileRow:
         return cls(found, whole, tiles, rows, _fitting_nodes(found, rows))
 
     def left_over(self, k: int) -> tuple[list[_Piece], Region]:
-        """What is left over in a tile: pieces of patches, and strips with crumbs."""
-        tile, step_mm = self.tiles[k], self.found.lattice.step_mm
-        free = clipped(self.whole.free, tile.around_mm)
-        rest = as_region(free.difference(self.whole.aoi.within(tile.around_mm)))
-        broad, strips = _opened(rest, NARROW_CELLS * step_mm)
+        """What is left over in a tile: pieces, and strips with crumbs."""
+        tile, cell_mm = self.tiles[k], self.found.lattice.step_mm
+        free, aoi = (region.within(tile.around_mm) for region in (self.whole.free, self.whole.aoi))
+        broad, strips = _opened(as_region(free.difference(aoi)), NARROW_CELLS * cell_mm)
         broad, strips = clipped(broad, tile.bounds_mm), clipped(strips, tile.bounds_mm)
         if broad.is_empty:
             return [], strips
-        wider = self._fitted(tile) | {Reason.PATH: self.whole.upper.within(tile.around_mm)}
-        pieces = list(_by_reason(polygons_in([broad]), wider, step_mm))
-        large = [
-            _Piece(reason, _compact(piece), tile.ends(piece))
-            for reason, piece in pieces
-            if piece.area >= step_mm**2
+        shared_out = _by_reason(broad, self.wider(tile), cell_mm)
+        pieces = [
+            _Piece(reason, _compact(region), tile.ends(region))
+            for reason, region in shared_out
+            if region.area >= cell_mm**2
         ]
-        crumbs = [piece for _, piece in pieces if piece.area < step_mm**2]
-        return large, _compact(shapely.union_all([strips, *crumbs]) if crumbs else strips)
+        crumbs = [region for _, region in shared_out if region.area < cell_mm**2]
+        return pieces, as_region(shapely.disjoint_subset_union_all([strips, *crumbs]))
 
-    def _fitted(self, tile: Tile) -> dict[Reason, Region]:
-        """What the disc covers near a tile from the nodes that fit."""
+    def wider(self, tile: Tile) -> dict[Reason, Region]:
+        """For each reason but the first what holds all that is left over for it and later ones.
+
+        These areas are `APART_MM` smaller than they are, each by so much more than the one before.
+        """
         lattice, disc_mm = self.found.lattice, self.found.robot.disc_radius_mm
         _, columns = tile.nodes(lattice, disc_mm)
         window = lattice.window(self.rows, columns)
-        return {
-            reason: region_of(outlines_of(nodes.window(EVERYTHING, columns), window, disc_mm))
-            for reason, nodes in self.fitting.items()
+        wider = {
+            reason: region_of(
+                outlines_of(nodes.window(EVERYTHING, columns), window, disc_mm - order * APART_MM)
+            )
+            for order, (reason, nodes) in enumerate(self.fitting.items(), start=1)
         }
+        upper = self.whole.upper.within(tile.around_mm)
+        apart_mm = (1 + len(wider)) * APART_MM
+        return wider | {Reason.PATH: as_region(upper.buffer(-apart_mm, join_style="mitre"))}
 
 
 def _fitting_nodes(found: Search, rows: slice) -> dict[Reason, Nodes]:
@@ -210,9 +224,9 @@ def _fitting_nodes(found: Search, rows: slice) -> dict[Reason, Nodes]:
     }
 
 
-def _compact(region: RegionT) -> RegionT:
+def _compact(region: Polygon) -> Polygon:
     """The same region in less than half the memory: what overlays make keeps room for more."""
-    copy: RegionT = shapely.from_wkb(shapely.to_wkb(region))
+    copy: Polygon = shapely.from_wkb(shapely.to_wkb(region))
     return copy
 
 
@@ -224,71 +238,66 @@ def _opened(region: Region, width_mm: float) -> tuple[Region, Region]:
 
 
 def _by_reason(
-    parts: list[Polygon], wider: dict[Reason, Region], step_mm: float
-) -> Iterator[tuple[Reason, Polygon]]:
-    """The pieces of parts of what is left over, by their reasons.
+    broad: Region, wider: dict[Reason, Region], cell_mm: float
+) -> list[tuple[Reason, Polygon]]:
+    """The pieces of what is left over, by their reasons.
 
     Outlines of nested areas run along each other, a rounding apart: pieces narrower than a cell
-    go to the reason that most of the part has.
+    go to the reason that most of their part has.
 
     Args:
-        parts: All are looked at together, which costs less than one by one.
-        wider: For each reason but the first the area that holds what is left over for that
-            reason and for all that come after it.
-        step_mm: Side of a cell.
+        broad: What is left over. All parts of it are overlaid together: an overlay of one with
+            all that is near it would cost the whole length of that.
+        wider: See `_TileRow.wider`.
+        cell_mm: Side of a cell.
     """
-    whole = np.array(parts, dtype=object)
-    shares = _shares(whole, wider, step_mm)
-    most = shapely.area(shares).argmax(axis=0)
-    others = [
-        (k, reason, piece)
-        for (order, reason), k in itertools.product(enumerate(Reason), range(whole.size))
-        if order != most[k]
-        for piece in polygons_in([shares[order, k]])
-        if piece.area >= step_mm**2
+    shares = [polygons_in([share]) for share in _shares(broad, wider)]
+    pieces = np.array(list(itertools.chain.from_iterable(shares)), dtype=object)
+    own = np.repeat(np.arange(len(shares)), [len(share) for share in shares])
+    orders = _most_of_part(pieces, own, polygons_in([broad]))
+    asked = np.flatnonzero((own != orders) & (shapely.area(pieces) >= cell_mm**2))
+    stays = asked[~shapely.is_empty(shapely.buffer(pieces[asked], -cell_mm / 2))]
+    orders[stays] = own[stays]
+    return [
+        (reason, region)
+        for order, reason in enumerate(Reason)
+        for region in polygons_in([put_together(pieces[orders == order])])
     ]
-    shrunk = shapely.buffer([piece for _, _, piece in others], -step_mm / 2)
-    elsewhere: dict[int, list[Polygon]] = {}
-    for (k, reason, piece), is_narrow in zip(others, shapely.is_empty(shrunk), strict=True):
-        if not is_narrow:
-            elsewhere.setdefault(k, []).append(piece)
-            yield reason, piece
-    for k, pieces in elsewhere.items():
-        whole[k] = whole[k].difference(shapely.union_all(pieces))
-    for region, order in zip(whole, most.tolist(), strict=True):
-        yield from ((list(Reason)[order], piece) for piece in polygons_in([region]))
 
 
-def _shares(
-    parts: npt.NDArray[np.object_], wider: dict[Reason, Region], step_mm: float
-) -> npt.NDArray[np.object_]:
-    """What of each part is left over for each reason, shape (n_reasons, n_parts)."""
-    inside = parts.copy()
-    # with room for the buffer; overlays of all that is near would cost its whole length
-    around = shapely.box(*(shapely.bounds(parts) + np.array((-1.0, -1.0, 1.0, 1.0))).T)
-    shares = np.full((len(Reason), parts.size), Polygon(), dtype=object)
-    asked = np.arange(parts.size)
-    for order, next_reason in enumerate(list(Reason)[1:]):
-        near = shapely.intersection(wider[next_reason], around[asked])
-        # each area holds the next: where one is met by rounding only, so are all after it
-        near = shapely.buffer(near, -APART_MM * (order + 1))
-        still = shapely.intersection(inside[asked], near)
-        goes_on = shapely.area(still) >= step_mm**2
-        shares[order, asked] = inside[asked]
-        asked, still, near = asked[goes_on], still[goes_on], near[goes_on]
-        shares[order, asked] = shapely.difference(inside[asked], near)
-        inside[asked] = still
-    shares[-1, asked] = inside[asked]
-    return shares
+def _shares(left_over: Region, wider: dict[Reason, Region]) -> Iterator[Region]:
+    """What is left over for each reason, in their order."""
+    for reason in list(Reason)[1:]:
+        yield as_region(left_over.difference(wider[reason]))
+        left_over = as_region(left_over.intersection(wider[reason]))
+    yield left_over
 
 
-def _joined(pieces: list[_Piece]) -> Iterator[tuple[Reason, Polygon]]:
+def _most_of_part(pieces: Geometries, orders: IntArray, parts: list[Polygon]) -> IntArray:
+    """For each piece the order that most of its part has; of a sliver in no part its own."""
+    tree = shapely.STRtree(parts)
+    held, part = tree.query(shapely.point_on_surface(pieces), predicate="intersects")
+    share_mm2 = np.zeros((len(parts), len(Reason)))
+    np.add.at(share_mm2, (part, orders[held]), shapely.area(pieces[held]))
+    most = orders.copy()
+    most[held] = share_mm2.argmax(axis=1)[part]
+    return most
+
+
+def put_together(pieces: Geometries) -> BaseGeometry:
+    """The union of pieces that were cut out of one region and share the corners of their seams."""
+    try:
+        return shapely.coverage_union_all(pieces)
+    except shapely.GEOSException:
+        # a later cut has set a corner on the seam of an earlier one
+        return shapely.union_all(pieces)
+
+
+def _joined(at_seams: list[_Piece]) -> Iterator[tuple[Reason, Polygon]]:
     """The patches that pieces make once those of a reason are joined across the seams."""
     for reason in Reason:
-        own = [piece for piece in pieces if piece.reason is reason]
-        yield from ((reason, piece.region) for piece in own if not piece.at_seam)
-        at_seams = [piece.region for piece in own if piece.at_seam]
-        yield from ((reason, region) for region in _unions(at_seams))
+        own = [piece.region for piece in at_seams if piece.reason is reason]
+        yield from ((reason, region) for region in _unions(own))
 
 
 def _unions(regions: list[Polygon]) -> Iterator[Polygon]:
@@ -301,7 +310,7 @@ def _unions(regions: list[Polygon]) -> Iterator[Polygon]:
     for region, group in zip(regions, roots(parents).tolist(), strict=True):
         groups[group].append(region)
     for group in groups.values():
-        yield from map(_compact, polygons_in([shapely.union_all(group)]))
+        yield from polygons_in([shapely.union_all(group)])
 
 
 def _largest_first(patch: Patch) -> tuple[float, tuple[float, float]]:
@@ -310,18 +319,24 @@ def _largest_first(patch: Patch) -> tuple[float, tuple[float, float]]:
 
 
 class _Blockers:
-    """Finds the obstacle that stands in the way of a patch."""
+    """Finds the obstacle that stands in the way of a patch.
 
-    def __init__(self, plan: FloorPlan) -> None:
+    Args:
+        plan: The plan.
+        regions: Of its obstacles.
+    """
+
+    def __init__(self, plan: FloorPlan, regions: list[BaseGeometry]) -> None:
         self._obstacles = plan.obstacles
-        self._tree = shapely.STRtree([o.region() for o in plan.obstacles])
+        self._tree = shapely.STRtree(regions)
         self._edge = plan.floor.boundary
 
     def patch(self, region: Region, reason: Reason, *, narrow: bool = False) -> Patch:
         """A patch with its label and, for what is too tight, what it is tight against."""
         label = max(polygons_in([region]), key=lambda p: p.area).representative_point()
         in_the_way = None if reason in (Reason.PATH, Reason.ZONE) else self._nearest(label)
-        return Patch(region, reason, (label.x, label.y), narrow, in_the_way)
+        wkb: bytes = shapely.to_wkb(region)
+        return Patch(wkb, region.area, reason, (label.x, label.y), narrow, in_the_way)
 
     def _nearest(self, point: Point) -> Obstacle | None:
         """The nearest obstacle, or None where the edge of the floor is nearer."""

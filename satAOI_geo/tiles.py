@@ -11,6 +11,7 @@ from typing import Final, TypeAlias
 import numpy as np
 import shapely
 from shapely.geometry import MultiPoint, MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from satAOI_geo.aoi import Loop, Outline
 from satAOI_geo.lattice import Lattice
@@ -22,8 +23,9 @@ TILE_CELLS: Final = 2048
 MARGIN_CELLS: Final = 16
 """By how much more than the tile is looked at: what is asked of a place depends on no more."""
 
-SAGITTA_MM: Final = 0.01
-"""How far the polygons may leave the arcs of the area of interest."""
+SAGITTA_MM: Final = 0.03
+"""How far the polygons may leave the arcs of the area of interest: far less than a drawing can
+show, and less than `reasons.APART_MM` sets nested areas apart."""
 
 Bounds: TypeAlias = tuple[float, float, float, float]
 
@@ -91,7 +93,29 @@ def clipped(region: Region, bounds_mm: Bounds) -> Region:
 
     GEOS has a quicker way, `clip_by_rect`, which now and then leaves a hole out.
     """
-    return as_region(region.intersection(shapely.box(*bounds_mm)))
+    window = shapely.box(*bounds_mm)
+    return region if window.covers(region) else as_region(region.intersection(window))
+
+
+class FreeFloor:
+    """The floor less the obstacles, of which a part costs no more than the obstacles near it.
+
+    Args:
+        floor: The floor.
+        obstacles: What stands on it: polygons, which may overlap, and lines, which take no floor.
+    """
+
+    def __init__(self, floor: Region, obstacles: Sequence[BaseGeometry]) -> None:
+        self._floor = floor
+        self._solids = np.array(polygons_in(obstacles), dtype=object)
+        self._tree = shapely.STRtree(self._solids)
+
+    def within(self, bounds_mm: Bounds) -> Region:
+        """The part in a rectangle."""
+        near = self._solids[np.sort(self._tree.query(shapely.box(*bounds_mm)))]
+        # most obstacles stand alone and need no overlay
+        taken = shapely.disjoint_subset_union_all(near)
+        return as_region(clipped(self._floor, bounds_mm).difference(taken))
 
 
 class Indexed:

@@ -2,15 +2,16 @@
 
 import itertools
 
+import numpy as np
 import pytest
 import shapely
-from shapely.geometry import Point, box
+from shapely.geometry import Point, Polygon, box
 
 from satAOI_geo import tiles
 from satAOI_geo.explain import explain
 from satAOI_geo.pipeline import Result, area_of_interest
-from satAOI_geo.plan import FloorPlan, Kind, Obstacle
-from satAOI_geo.reasons import Patch, Reason, unreached
+from satAOI_geo.plan import FloorPlan, Kind, Obstacle, polygons_in
+from satAOI_geo.reasons import Patch, Reason, put_together, unreached
 from satAOI_geo.settings import Settings
 from satAOI_geo.start import StartMark
 from satAOI_geo.units import MM2_PER_M2
@@ -63,6 +64,13 @@ def test_patches_do_not_overlap(seed: int) -> None:
     assert together == pytest.approx(sum(region.area for region in regions), abs=SLACK_MM2)
 
 
+def test_a_patch_keeps_the_area_of_its_shape_in_16_bytes_a_corner() -> None:
+    for patch in niche(690, 1600).patches:
+        n_rings = sum(1 + len(part.interiors) for part in polygons_in([patch.region]))
+        assert patch.area_mm2 == patch.region.area
+        assert len(patch.wkb) <= 16 * shapely.get_num_coordinates(patch.region) + 16 * (n_rings + 1)
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_label_lies_in_its_patch(seed: int) -> None:
     settings = Settings(step_mm=25.0, n_directions=12)
@@ -92,6 +100,29 @@ def test_a_floor_cut_into_tiles_has_the_same_left_over(
         )
         assert cut_mm2 == pytest.approx(whole_mm2, abs=0.004 * left_mm2)
     assert cut[0].area_mm2 == pytest.approx(result.patches[0].area_mm2, rel=0.01)
+
+
+@pytest.mark.parametrize("seed", [1, 3])
+def test_free_floor_by_rectangles_is_the_free_floor(seed: int) -> None:
+    plan = plans.random_plan(seed)
+    whole = plan.free_region()
+    free = tiles.FreeFloor(plan.floor, [obstacle.region() for obstacle in plan.obstacles])
+    left, bottom, right, top = plan.floor.bounds
+    middle_mm = (left + right) / 2
+    for bounds_mm in [(left, bottom, middle_mm, top), (middle_mm, bottom, right, top)]:
+        own = free.within(bounds_mm)
+        assert own.symmetric_difference(whole.intersection(box(*bounds_mm))).area < SLACK_MM2
+
+
+@pytest.mark.parametrize("corner_mm", [10.0, 10.0 - 1e-9], ids=["on the seam", "beside it"])
+def test_pieces_become_one_where_a_corner_is_on_one_side_of_their_seam_only(
+    corner_mm: float,
+) -> None:
+    left = box(0, 0, 10, 10)
+    right = Polygon([(10, 0), (20, 0), (20, 10), (10, 10), (corner_mm, 5)])
+    together = put_together(np.array([left, right], dtype=object))
+    assert together.geom_type == "Polygon"
+    assert together.area == pytest.approx(200.0)
 
 
 def test_niche_narrower_than_the_disc_is_left_for_the_disc() -> None:

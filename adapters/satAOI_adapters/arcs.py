@@ -20,9 +20,9 @@ from satAOI_geo.plan import BoolArray, IntArray
 
 Points: TypeAlias = npt.NDArray[np.complex128]
 
-RISE_MM: Final = 0.02
+RISE_MM: Final = 0.04
 """How far an arc may rise over the chords it replaces. Arcs of the area come with chords they rise
-0.01 mm over; a polygon that was drawn as one, a pillar of eight corners, stays a polygon."""
+0.03 mm over; a polygon that was drawn as one, a pillar of eight corners, stays a polygon."""
 
 ALIKE_MM: Final = 0.001
 """Corners share a circle when their centres are this close. They lie on it up to the rounding of
