@@ -47,9 +47,9 @@ def test_help_starts_none_of_the_heavy_libraries() -> None:
 
 
 def test_a_run_loads_nothing_that_only_other_plans_robots_and_outputs_need(room: Path) -> None:
-    others = ("pydantic", "ifcopenshell", "trimesh", "PIL", "rich.progress", "distributed")
+    others = ("pydantic", "ifcopenshell", "trimesh", "PIL", "rich.console", "distributed")
     code = (
-        f"import sys; from satAOI_geo.cli import main; main([{str(room)!r}, '--quiet']); "
+        f"import sys; from satAOI_geo.cli import main; main([{str(room)!r}]); "
         f"print('loaded:', *(name for name in {others} if name in sys.modules))"
     )
     done = subprocess.run(

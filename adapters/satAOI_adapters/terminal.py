@@ -38,11 +38,16 @@ def say_note(message: str) -> None:
 
 
 def _say(word: str, style: str, message: str) -> None:
+    line = " ".join(message.split())
+    if not sys.stderr.isatty():
+        # without colours, for which alone rich would be loaded, and that takes its time
+        sys.stderr.write(f"{word}: {line}\n")
+        return
     from rich.console import Console
 
-    console = Console(stderr=True, highlight=False, markup=False, soft_wrap=True)
+    console = Console(stderr=True, highlight=False, markup=False, emoji=False, soft_wrap=True)
     console.print(f"{word}:", style=style, end=" ")
-    console.print(" ".join(message.split()))
+    console.print(line)
 
 
 def say_findings(findings: Iterable["Finding"]) -> None:
@@ -82,12 +87,11 @@ def write_table(rows: Sequence[Sequence[str]], stream: TextIO) -> None:
 
 def _watched(*, quiet: bool) -> "Console | None":
     """Standard error where somebody sees a bar move there, else None."""
-    if quiet:
+    if quiet or not sys.stderr.isatty():
         return None
     from rich.console import Console
 
-    console = Console(stderr=True)
-    return console if console.is_terminal else None
+    return Console(stderr=True)
 
 
 @contextmanager
