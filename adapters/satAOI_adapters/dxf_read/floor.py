@@ -192,9 +192,9 @@ def _guessed(regions: Sequence[BaseGeometry]) -> Floor:
         (
             Finding(
                 "floor-guessed",
-                "no layer shows the floor and the walls do not enclose any: it is guessed as what a "
-                f"taut string around all obstacles would hold, {hull.area / 1e6:.2f} m²; where it "
-                "really ends is not known, and no edge there stops the robot",
+                "no layer shows the floor and the walls do not enclose any: it is guessed as what "
+                f"a taut string around all obstacles would hold, {hull.area / 1e6:.2f} m²; where "
+                "it really ends is not known",
                 "draw its outline on a layer FLOOR, or give the part to read with --region",
             ),
         ),
