@@ -15,7 +15,16 @@ from shapely.geometry.base import BaseGeometry
 
 from satAOI_geo.lattice import Lattice, Words
 from satAOI_geo.nodes import Nodes
-from satAOI_geo.plan import CONTACT_MM, Circle, FloorPlan, IntArray, Obstacle, Shape, polygons_in
+from satAOI_geo.plan import (
+    CONTACT_MM,
+    BoolArray,
+    Circle,
+    FloorPlan,
+    IntArray,
+    Obstacle,
+    Shape,
+    polygons_in,
+)
 from satAOI_geo.robot import Part, Pose, Robot, unit
 from satAOI_geo.sweep import stepped
 
@@ -117,17 +126,15 @@ class Reference:
         """An engine for some rows of the lattice, with start and stop."""
         return Reference(self._collider, self._lattice.band(rows))
 
-    def blocked(self, part: Part) -> Words:
+    def blocked(self, part: Part, rows: BoolArray | None = None) -> Words:
         """Nodes at which the part touches something, and every bit beyond the last column."""
         lattice = self._lattice
-        touches = [
-            [
-                bool(self._collider.touched(part.moved(lattice.x_mm(ix), lattice.y_mm(iy))))
-                for ix in range(lattice.n_columns)
-            ]
-            for iy in range(lattice.n_rows)
-        ]
-        return Nodes.of(np.array(touches)).words | lattice.no_nodes()
+        touches = np.zeros(lattice.shape, dtype=np.bool_)
+        for iy in range(lattice.n_rows) if rows is None else np.flatnonzero(rows).tolist():
+            for ix in range(lattice.n_columns):
+                at_node = part.moved(lattice.x_mm(ix), lattice.y_mm(iy))
+                touches[iy, ix] = bool(self._collider.touched(at_node))
+        return Nodes.of(touches).words | lattice.no_nodes()
 
 
 def _part_core(part: Part) -> BaseGeometry:

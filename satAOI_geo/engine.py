@@ -3,7 +3,7 @@
 from typing import Protocol
 
 from satAOI_geo.lattice import Words
-from satAOI_geo.plan import IntArray
+from satAOI_geo.plan import BoolArray, IntArray
 from satAOI_geo.robot import Part
 
 
@@ -23,5 +23,10 @@ class Engine(Protocol):
     def band(self, rows: slice) -> "Engine":
         """An engine for some rows of the lattice, with start and stop."""
 
-    def blocked(self, part: Part) -> Words:
-        """Nodes at which the part touches something, and every bit beyond the last column."""
+    def blocked(self, part: Part, rows: BoolArray | None = None) -> Words:
+        """Nodes at which the part touches something, and every bit beyond the last column.
+
+        Args:
+            part: The part.
+            rows: Shape (n_rows,), whether a row is asked for; in others nodes may be missing.
+        """

@@ -12,7 +12,7 @@ from satAOI_geo.engine import Engine
 from satAOI_geo.kernels import kernel
 from satAOI_geo.lattice import WORD_BITS, Lattice, Words
 from satAOI_geo.nodes import Nodes
-from satAOI_geo.plan import IntArray
+from satAOI_geo.plan import BoolArray, IntArray
 from satAOI_geo.robot import Part, Robot
 from satAOI_geo.sweep import carried, turned
 
@@ -72,11 +72,16 @@ class Move:
     unless_vehicle: Words
     sweep: Part
 
-    def allowed(self, engine: Engine) -> Words:
-        """Nodes at which it may be made: both ends and all between them touch nothing."""
-        allowed = engine.blocked(self.sweep)
+    def allowed(self, engine: Engine, rows: BoolArray | None = None) -> Words:
+        """Nodes at which it may be made: both ends and all between them touch nothing.
+
+        Where `rows`, shape (n_rows,), are asked for, only their nodes.
+        """
+        allowed = engine.blocked(self.sweep, rows)
         np.invert(allowed, out=allowed)
         allowed &= self.unless_vehicle
+        if rows is not None:
+            allowed[~rows] = 0
         return allowed
 
 

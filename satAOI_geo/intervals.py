@@ -24,6 +24,7 @@ from satAOI_geo.kernels import filled, helper, kernel
 from satAOI_geo.lattice import Lattice, Words
 from satAOI_geo.plan import (
     CONTACT_MM,
+    BoolArray,
     Circle,
     FloatArray,
     FloorPlan,
@@ -118,7 +119,7 @@ class Intervals:
 
     def block(self, words: Words, part: Part) -> IntArray:
         """Set the bits of the nodes at which the part touches something; the steps it bars."""
-        return self._block(words, part, watch=True)
+        return self._block(words, part, None, watch=True)
 
     def band(self, rows: slice) -> "Intervals":
         """An engine for some rows of the lattice, with start and stop."""
@@ -128,13 +129,13 @@ class Intervals:
         pieces = self.pieces.between(low - reach, high + reach)
         return replace(self, lattice=lattice, pieces=pieces)
 
-    def blocked(self, part: Part) -> Words:
+    def blocked(self, part: Part, rows: BoolArray | None = None) -> Words:
         """Nodes at which the part touches something, and every bit beyond the last column."""
         words = self.lattice.no_nodes()
-        self._block(words, part, watch=False)
+        self._block(words, part, rows, watch=False)
         return words
 
-    def _block(self, words: Words, part: Part, *, watch: bool) -> IntArray:
+    def _block(self, words: Words, part: Part, rows: BoolArray | None, *, watch: bool) -> IntArray:
         """Set the bits of the nodes at which the part touches something; see the kernel."""
         lattice, pieces = self.lattice, self.pieces
         # -K: a half turn keeps the sense of rotation
@@ -144,6 +145,7 @@ class Intervals:
         # no piece has more corners than all have together
         corners = np.empty((2, pieces.x.size + part_x.size + 1))
         flanks = np.empty((2, lattice.n_rows))
+        nearest = _nearest(rows, lattice.n_rows)
         return filled(
             lambda barred: _block(
                 words,
@@ -159,11 +161,24 @@ class Intervals:
                 pieces.radius,
                 corners,
                 flanks,
+                nearest,
                 watch,
                 barred,
             ),
             np.empty((BARRED, 3), dtype=np.int64),
         )
+
+
+def _nearest(rows: BoolArray | None, n_rows: int) -> IntArray:
+    """For each row the first one asked for from there on, and the last one up to there.
+
+    Shape (2, n_rows); the number of rows, or -1, where there is none. None asks for all rows.
+    """
+    number = np.arange(n_rows)
+    if rows is None:
+        return np.stack((number, number))
+    ahead = np.minimum.accumulate(np.where(rows, number, n_rows)[::-1])[::-1]
+    return np.stack((ahead, np.maximum.accumulate(np.where(rows, number, -1))))
 
 
 def _pieces(shape: Shape) -> list[FloatArray]:
@@ -190,7 +205,7 @@ def _from_lowest(corners: FloatArray) -> FloatArray:
 @kernel(
     "int64(uint64[:, :], int64, int64, const float64[:], const float64[:], float64, "
     "const float64[:], const float64[:], const int64[:], const float64[:], const float64[:], "
-    "float64[:, :], float64[:, :], bool, int64[:, :])"
+    "float64[:, :], float64[:, :], const int64[:, :], bool, int64[:, :])"
 )
 def _block(
     words: Words,
@@ -206,6 +221,7 @@ def _block(
     radius: FloatArray,
     corners: FloatArray,
     flanks: FloatArray,
+    nearest: IntArray,
     watch: bool,  # noqa: FBT001  kernels take no keywords
     barred: IntArray,
 ) -> int:
@@ -228,6 +244,7 @@ def _block(
         radius: The same.
         corners: Room for x and y of the corners of a sum, the first one twice.
         flanks: Room for its left and right end in each row.
+        nearest: Which rows are asked for, see `_nearest`; all where steps are looked for.
         watch: Whether to look for steps that a piece bars between their ends.
         barred: Room for such steps, three numbers each, see `Engine.block`.
 
@@ -246,10 +263,14 @@ def _block(
         highest = math.floor(top[piece] + part_top + r)
         if lowest >= first_row + n_rows or highest < first_row:
             continue
+        low = first_row + nearest[0, max(lowest - first_row, 0)]
+        high = first_row + nearest[1, min(highest - first_row, n_rows - 1)]
+        # what lies between two rows touches no node, but may bar a step
+        if low > high and not watch:
+            continue
         n_corners, n_rising = _minkowski_sum(
             x[begin:end], y[begin:end], part_x, part_y, sum_x, sum_y
         )
-        low, high = max(first_row, lowest), min(first_row + n_rows - 1, highest)
         _right_flank(sum_x, sum_y, n_rising, r, low, high, first_row, right)
         _left_flank(sum_x, sum_y, n_rising, n_corners, r, low, high, first_row, left)
         _to_columns(left[low - first_row : high - first_row + 1], right[low - first_row :])

@@ -306,8 +306,9 @@ class _Joined:
         What the vehicle sweeps is looked at only where that could still join two components.
         """
         meeting = Meeting.of(self._runs, (move.a1, move.swing), (move.to_a1, move.to_swing))
-        if meeting.are_apart(self.parents, move.unless_vehicle):
-            pairs = meeting.links(move.allowed(self._engine))
+        rows = meeting.rows_apart(self.parents, move.unless_vehicle)
+        if rows.any():
+            pairs = meeting.links(move.allowed(self._engine, rows))
             with self._one_at_a_time:
                 unite(self.parents, pairs)
 

@@ -14,7 +14,7 @@ from satAOI_geo.intervals import set_bits
 from satAOI_geo.kernels import helper, kernel
 from satAOI_geo.lattice import Lattice, Words
 from satAOI_geo.nodes import Nodes, from_right
-from satAOI_geo.plan import IntArray
+from satAOI_geo.plan import BoolArray, IntArray
 
 Int32Array: TypeAlias = npt.NDArray[np.int32]
 
@@ -135,12 +135,14 @@ class Meeting:
         found = np.empty((first_a[-1] - first_a[0] + first_b[-1] - first_b[0], 3), dtype=np.int32)
         return found[: _links(allowed, first_a, first_b, self.end, found)]
 
-    def are_apart(self, parents: Int32Array, ends: Words) -> bool:
-        """Whether a move could join two components of the forest `parents`.
+    def rows_apart(self, parents: Int32Array, ends: Words) -> BoolArray:
+        """The rows in which a move could join two components of the forest `parents`.
 
         `ends` are the nodes at which both ends of the move are free.
         """
-        return bool(_are_apart(parents, ends, self.first_a, self.first_b, self.end))
+        apart = np.empty(ends.shape[0], dtype=np.bool_)
+        _rows_apart(parents, ends, self.first_a, self.first_b, self.end, apart)
+        return apart
 
 
 def rows_of(nodes: Nodes) -> SliceRuns:
@@ -242,16 +244,25 @@ def _links(
     return n
 
 
-@kernel("bool(const int32[:], const uint64[:, :], const int64[:], const int64[:], const int32[:])")
-def _are_apart(
-    parents: Int32Array, ends: Words, first_a: IntArray, first_b: IntArray, end: Int32Array
-) -> bool:
-    """Whether two runs that meet at a node have different roots.
+@kernel(
+    "void(const int32[:], const uint64[:, :], const int64[:], const int64[:], const int32[:], "
+    "bool[:])"
+)
+def _rows_apart(
+    parents: Int32Array,
+    ends: Words,
+    first_a: IntArray,
+    first_b: IntArray,
+    end: Int32Array,
+    apart: BoolArray,
+) -> None:
+    """Write for each row whether two runs that meet at a node have different roots.
 
     It reads the forest only, which others may be changing: a root that is out of date makes two
     runs look apart that no longer are, never the other way round.
     """
     for iy in range(ends.shape[0]):
+        apart[iy] = False
         a, b = first_a[iy], first_b[iy]
         ix = _next_bit(ends[iy], 0)
         while ix >= 0:
@@ -260,9 +271,9 @@ def _are_apart(
             while end[b] < ix:
                 b += 1
             if _found(parents, a) != _found(parents, b):
-                return True
+                apart[iy] = True
+                break
             ix = _next_bit(ends[iy], min(end[a], end[b]) + 1)
-    return False
 
 
 @helper

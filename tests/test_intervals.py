@@ -9,11 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Polygon, box
 
+from satAOI_geo.collision import Collider, Reference
 from satAOI_geo.intervals import Intervals, set_bits
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import CONTACT_MM, BoolArray, Circle, FloatArray, FloorPlan, Shape
 from satAOI_geo.robot import ROBOTS, Part, unit
+from tests import plans
 from tests.drawn import plan_of
 
 PROTOTYPE = ROBOTS["magicbim"]
@@ -238,3 +240,17 @@ def polygon_gaps_mm(corners_mm: FloatArray, x_mm: FloatArray, y_mm: FloatArray) 
         inside &= left_mm >= 0
         nearest_mm = np.minimum(nearest_mm, np.hypot(beyond_mm(along_mm, 0, length_mm), left_mm))
     return np.where(inside, 0.0, nearest_mm)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_rows_that_are_asked_for_are_those_of_the_whole(seed: int) -> None:
+    plan = plans.random_plan(seed, n_obstacles=8)
+    lattice = Lattice.over(plan.floor.bounds, PROTOTYPE, step_mm=50.0)
+    part = PROTOTYPE.vehicle(unit(0.3), unit(1.1))
+    engines = Intervals.of(plan, PROTOTYPE, lattice), Reference(Collider(plan, PROTOTYPE), lattice)
+    whole = engines[0].blocked(part)
+    draw = np.random.default_rng(seed)
+    for share in (0.0, 0.05, 0.5):
+        rows = draw.random(lattice.n_rows) < share
+        for engine in engines:
+            assert np.array_equal(engine.blocked(part, rows)[rows], whole[rows])

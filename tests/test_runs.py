@@ -115,7 +115,7 @@ def test_links_join_the_runs_that_single_moves_join(
 
 
 @given(TWO_SLICES, st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.5, 0.9, 1.0]))
-def test_runs_are_apart_as_long_as_some_link_would_join_two_components(
+def test_runs_are_apart_in_the_rows_in_which_some_link_would_join_two_components(
     drawn: tuple[tuple[BoolArray, BoolArray], tuple[BoolArray, BoolArray]],
     seed: int,
     share: float,
@@ -126,9 +126,10 @@ def test_runs_are_apart_as_long_as_some_link_would_join_two_components(
     links = meeting.links(ends)
     parents = np.arange(runs.begin.size, dtype=np.int32)
     unite(parents, links[np.random.default_rng(seed).random(len(links)) < share])
-    apart = meeting.are_apart(parents, ends)
+    apart = meeting.rows_apart(parents, ends)
     root = roots(parents)
-    assert apart == any(root[a] != root[b] for a, b, _ in links.tolist())
+    expected = {runs.rows()[a] for a, b, _ in links.tolist() if root[a] != root[b]}
+    assert set(np.flatnonzero(apart).tolist()) == expected
 
 
 @given(st.integers(1, 60), st.lists(st.tuples(st.integers(0, 59), st.integers(0, 59)), max_size=80))
