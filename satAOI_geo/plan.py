@@ -239,6 +239,16 @@ class FloorPlan:
         solids = [o.region() for o in self.obstacles if not isinstance(o.shape, LineString)]
         return as_region(shapely.union_all(solids).intersection(self.floor))
 
+    def obstacle_area_mm2(self) -> float:
+        """Area of the obstacle region; most obstacles stand alone inside and need no overlay."""
+        solids = np.array(polygons_in([o.region() for o in self.obstacles]), dtype=object)
+        touching, _ = shapely.STRtree(solids).query(solids, predicate="intersects")
+        is_alone = np.bincount(touching, minlength=solids.size) == 1
+        shapely.prepare(self.floor)
+        is_inside = is_alone & shapely.covers(self.floor, solids)
+        others_mm2 = shapely.union_all(solids[~is_inside]).intersection(self.floor).area
+        return float(shapely.area(solids[is_inside]).sum()) + others_mm2
+
     def free_region(self) -> Region:
         """The floor less the obstacles: the ceiling of any area of interest."""
         return as_region(self.floor.difference(self.obstacle_region()))

@@ -109,7 +109,7 @@ class FloorFigures:
     @classmethod
     def of(cls, plan: FloorPlan) -> "FloorFigures":
         """The figures of a floor; the obstacle area is that on it, overlaps counted once."""
-        obstacle_mm2 = plan.obstacle_region().area
+        obstacle_mm2 = plan.obstacle_area_mm2()
         return cls(
             area_m2=plan.floor.area / MM2_PER_M2,
             source=plan.floor_source,

@@ -1,5 +1,7 @@
 """The named plans are what they say: their closed forms hold against shapely's buffers."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -79,3 +81,13 @@ def test_motions_keep_circles_as_circles() -> None:
     plan = plans.room_with_round_column().plan
     (column,) = plans.quarter_turned(plan).obstacles
     assert column.shape == Circle(-3000.0, 3000.0, 300.0)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_obstacle_area_is_that_of_the_obstacle_region(seed: int) -> None:
+    plan = plans.random_plan(seed)
+    assert plan.obstacle_area_mm2() == pytest.approx(plan.obstacle_region().area, rel=1e-12)
+
+
+def test_floor_without_obstacles_has_no_obstacle_area() -> None:
+    assert replace(plans.random_plan(0), obstacles=()).obstacle_area_mm2() == 0.0
