@@ -10,7 +10,7 @@ import shapely
 from ezdxf import transform
 from ezdxf.document import Drawing
 from ezdxf.layouts import Modelspace
-from ezdxf.math import Matrix44, Vec3
+from ezdxf.math import ConstructionArc, Matrix44, Vec3
 from shapely.geometry import LineString, Polygon, box
 
 from satAOI_geo.errors import EmptyPlanError
@@ -570,6 +570,42 @@ def test_door_drawn_among_walls_is_left_out_and_the_walls_stay(leaf: str, tmp_pa
     plan = plan_of(document, tmp_path)
     assert [o.shape for o in plan.obstacles] == [o.shape for o in bare.obstacles]
     assert "door-among-walls" in codes(plan)
+
+
+@pytest.mark.parametrize("arc", ["by hand", "of straight lines"])
+def test_door_whose_arc_is_not_about_its_hinge_is_a_door_all_the_same(
+    arc: str, tmp_path: Path
+) -> None:
+    document = house(opening_mm=900.0)
+    space = document.modelspace()
+    on = {"layer": "WALL"}
+    bare = plan_of(document, tmp_path)
+    space.add_line((2000, 200), (2450, 200 + 900 * math.sin(math.radians(60))), dxfattribs=on)
+    if arc == "by hand":
+        # through a point 30 mm off the circle about the hinge
+        bow = ConstructionArc.from_3p((2905, 210), (2430, 1000), (2805, 640))
+        bow.add_to_layout(space, dxfattribs=on)
+    else:
+        turns_rad = [math.radians(turn_deg) for turn_deg in range(0, 61, 10)]
+        spots = [(2000 + 900 * math.cos(t), 200 + 900 * math.sin(t)) for t in turns_rad]
+        space.add_lwpolyline(spots, dxfattribs=on)
+    plan = plan_of(document, tmp_path)
+    assert [o.shape for o in plan.obstacles] == [o.shape for o in bare.obstacles]
+    assert "door-among-walls" in codes(plan)
+
+
+@pytest.mark.parametrize("thickness_mm", [100.0, 150.0, 200.0, 400.0])
+def test_round_end_of_a_wall_is_no_swing(thickness_mm: float, tmp_path: Path) -> None:
+    document = drawing()
+    radius = thickness_mm / 2
+    bulged = [(1000, 1000, 0), (1900, 1000, 1), (1900, 1000 + thickness_mm, 0)]
+    bulged.append((1000, 1000 + thickness_mm, 0))
+    document.modelspace().add_lwpolyline(
+        bulged, format="xyb", close=True, dxfattribs={"layer": "WALL"}
+    )
+    plan = plan_of(document, tmp_path)
+    area_mm2 = 900 * thickness_mm + math.pi * radius**2 / 2
+    assert plan.obstacle_region().area == pytest.approx(area_mm2, rel=1e-3)
 
 
 def test_leaf_on_a_nameless_layer_is_no_obstacle(tmp_path: Path) -> None:

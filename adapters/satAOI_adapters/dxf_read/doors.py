@@ -1,46 +1,29 @@
 """What is drawn on door layers: no obstacle, but some of it says where walls or the floor end.
 
-Leaves and swings never stop the robot, also where they are drawn among walls or windows: an arc
-and a line from its centre to its end tell them. Lines that span an opening close the floor there.
-And some offices draw whole partitions on the layer of their doors; these are walls.
+Lines that span an opening close the floor there. And some offices draw whole partitions on the
+layer of their doors; these are walls.
 """
 
 import math
-from collections import defaultdict
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
 
 import numpy as np
 import shapely
 from shapely.geometry import LineString
-from shapely.geometry import Point as Spot
 from shapely.geometry.base import BaseGeometry
 
-from satAOI_adapters.dxf_read.curves import Arc, Line, Path
+from satAOI_adapters.dxf_read.curves import Line, Path
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.groups import linked, tree_of
 from satAOI_adapters.dxf_read.linework import PARALLEL
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
+from satAOI_adapters.dxf_read.swings import LEAF_MM, LEAST_LEAF_MM
 from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray
-
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
 
 JAMB_MM: Final = 300.0
 """A line that ends this close to walls on both sides spans the opening between them."""
-
-LEAF_MM: Final = 1300.0
-"""No door leaf is longer."""
-
-LEAST_LEAF_MM: Final = 400.0
-"""No leaf of a door that people go through is shorter."""
-
-LEAF_SLACK_MM: Final = 60.0
-"""A leaf may start and end this far from its arc's centre and its arc: it has a thickness."""
-
-WIDEST_RAD: Final = math.radians(190)
-"""Doors are drawn open by up to half a turn."""
 
 ABREAST_MM: Final = 20.0
 """Lines of a window end this close to abreast of each other."""
@@ -106,117 +89,6 @@ def loose_pieces(
 def as_lines(pieces: Sequence[Feature]) -> list[LineString]:
     """Features of one straight piece each as lines."""
     return [LineString((path.start, path.end)) for piece in pieces for path in piece.paths]
-
-
-@dataclass(frozen=True, slots=True)
-class Swing:
-    """A door as it is drawn: an arc with a straight leaf from its centre to it.
-
-    Attributes:
-        arc: About the hinge.
-        leaves: The sides of the leaf.
-        caps: The short lines that join these.
-    """
-
-    arc: Arc
-    leaves: tuple[Line, ...]
-    caps: tuple[Line, ...]
-
-
-def swings(features: Sequence[Feature]) -> list[Swing]:
-    """The doors among what is drawn."""
-    arcs = [
-        piece
-        for feature in features
-        for path in feature.paths
-        for piece in path.pieces
-        if isinstance(piece, Arc) and may_be_swing(piece)
-    ]
-    lines = [
-        piece
-        for feature in features
-        for path in feature.paths
-        for piece in path.pieces
-        if isinstance(piece, Line)
-    ]
-    if not arcs or not lines:
-        return []
-    tree = tree_of([end for line in lines for end in (line.start, line.end)])
-    found = []
-    for arc in arcs:
-        near = [lines[i // 2] for i in tree.query_ball_point(arc.centre, LEAF_SLACK_MM)]
-        leaves = tuple(line for line in near if _is_leaf(line, arc))
-        if leaves:
-            found.append(Swing(arc, leaves, _caps(leaves, lines, tree)))
-    return found
-
-
-def without_swings(features: Sequence[Feature], found: Sequence[Swing]) -> list[Feature]:
-    """Features less the doors found among them.
-
-    With a door go whatever else of the same paths lies within its circle: the other side of the
-    leaf.
-    """
-    doors_of: defaultdict[int, list[Arc]] = defaultdict(list)
-    for swing in found:
-        for piece in (swing.arc, *swing.leaves, *swing.caps):
-            doors_of[id(piece)].append(swing.arc)
-    kept = []
-    for feature in features:
-        paths = tuple(path for path in feature.paths if not _draws_door(path, doors_of))
-        if paths:
-            kept.append(replace(feature, paths=paths))
-    return kept
-
-
-def _caps(leaves: Sequence[Line], lines: Sequence[Line], tree: "cKDTree") -> tuple[Line, ...]:
-    """The short lines that run from a leaf's one side to its other.
-
-    Args:
-        leaves: The sides of a door's leaf.
-        lines: All lines, of which they are some.
-        tree: The ends of all lines, two a line.
-    """
-    ends = [end for leaf in leaves for end in (leaf.start, leaf.end)]
-    touched = {i for end in ends for i in tree.query_ball_point(end, CLOSE_GAPS_MM)}
-    joining = [lines[i // 2] for i in touched if i % 2 == 0 and i + 1 in touched]
-    return tuple(line for line in joining if math.dist(line.start, line.end) <= LEAF_SLACK_MM)
-
-
-def _draws_door(path: Path, doors_of: Mapping[int, Sequence[Arc]]) -> bool:
-    """Whether a path is a door's arc or leaf, and shows nothing beyond the door's circle.
-
-    Args:
-        path: What is drawn.
-        doors_of: The arcs of the doors to which a piece belongs, by the piece's identity.
-    """
-    swings = [swing for piece in path.pieces for swing in doors_of.get(id(piece), ())]
-    return any(_holds(swing, path) for swing in swings)
-
-
-def _holds(swing: Arc, path: Path) -> bool:
-    """Whether a path stays within a door's circle."""
-    reach_mm = math.hypot(*swing.u) + LEAF_SLACK_MM
-    return all(
-        math.dist(spot, swing.centre) <= reach_mm
-        for piece in path.pieces
-        for spot in (piece.start, piece.end)
-    )
-
-
-def may_be_swing(arc: Arc) -> bool:
-    """Whether an arc is as large as those that doors draw."""
-    radius_mm = math.hypot(*arc.u)
-    return arc.is_round and LEAST_LEAF_MM <= radius_mm <= LEAF_MM and arc.sweep_rad <= WIDEST_RAD
-
-
-def _is_leaf(line: Line, arc: Arc) -> bool:
-    """Whether a line runs from an arc's centre to the arc."""
-    swing = LineString(arc.chords())
-    return any(
-        math.dist(hinge, arc.centre) <= LEAF_SLACK_MM and swing.distance(Spot(tip)) <= LEAF_SLACK_MM
-        for hinge, tip in ((line.start, line.end), (line.end, line.start))
-    )
 
 
 def partition_findings(found: Sequence[Feature]) -> list[Finding]:

@@ -12,7 +12,6 @@ from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Path
-from satAOI_adapters.dxf_read.doors import LEAST_LEAF_MM
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.linework import (
     WALL_MM,
@@ -34,6 +33,7 @@ from satAOI_adapters.dxf_read.shapes import (
     slivers,
     traces,
 )
+from satAOI_adapters.dxf_read.swings import LEAST_LEAF_MM
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_geo.plan import Circle, Finding, Kind, Obstacle, Shape, polygons_in
 

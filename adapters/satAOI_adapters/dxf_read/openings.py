@@ -21,11 +21,12 @@ from shapely.geometry import Point as Spot
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Point
-from satAOI_adapters.dxf_read.doors import ABREAST_MM, LEAF_SLACK_MM, Swing
+from satAOI_adapters.dxf_read.doors import ABREAST_MM
 from satAOI_adapters.dxf_read.linework import WALL_MM
 from satAOI_adapters.dxf_read.obstacles import Standing
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.shapes import rounded
+from satAOI_adapters.dxf_read.swings import LEAF_SLACK_MM, Swing
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_geo.plan import Circle, Finding, Obstacle, Shape, polygons_in
 
@@ -143,16 +144,13 @@ def with_openings(
 
 
 def shut(door: Swing) -> list[Span]:
-    """Where a door may be when it is shut: at the end of its arc that its leaf is not at."""
-    hinge, ends = door.arc.centre, (door.arc.start, door.arc.end)
-    tips = [tip for leaf in door.leaves for tip in (leaf.start, leaf.end)]
-    free = [end for end in ends if all(math.dist(end, tip) > LEAF_SLACK_MM for tip in tips)]
-    return [Span(hinge, end) for end in free or ends]
+    """Where a door may be when it is shut."""
+    return [Span(door.hinge, tip) for tip in door.shut_at]
 
 
 def _alone(masks: Sequence[Polygon], doors: Sequence[Swing]) -> list[Polygon]:
     """The masks at which no door swings."""
-    hinges = shapely.STRtree([Spot(door.arc.centre) for door in doors])
+    hinges = shapely.STRtree([Spot(door.hinge) for door in doors])
     return [
         mask
         for mask in masks

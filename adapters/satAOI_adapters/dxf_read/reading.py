@@ -21,8 +21,6 @@ from satAOI_adapters.dxf_read.doors import (
     partition_findings,
     partitions,
     spans,
-    swings,
-    without_swings,
 )
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.floor import floor_of
@@ -33,6 +31,7 @@ from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
 from satAOI_adapters.dxf_read.plans import Drawn, chosen, clusters, within
 from satAOI_adapters.dxf_read.shapes import middle_line
 from satAOI_adapters.dxf_read.survey import Survey, survey
+from satAOI_adapters.dxf_read.swings import swings, without_swings
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_adapters.dxf_read.unclassified import unclassified
 from satAOI_adapters.dxf_read.windows import window_findings, windows

@@ -20,16 +20,15 @@ from shapely.geometry.base import BaseGeometry
 from satAOI_adapters.dxf_read.curves import Arc
 from satAOI_adapters.dxf_read.doors import (
     FACES_MM,
-    LEAF_SLACK_MM,
     abreast,
     as_lines,
     directions,
     loose_pieces,
-    may_be_swing,
     spanning,
 )
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.groups import linked
+from satAOI_adapters.dxf_read.swings import LEAF_SLACK_MM, may_be_swing
 from satAOI_geo.plan import BoolArray, Finding, IntArray
 
 APART_MM: Final = 5.0

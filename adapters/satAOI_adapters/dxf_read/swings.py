@@ -1,0 +1,209 @@
+"""Doors by their swings: an arc, and a leaf that runs from its hinge to it.
+
+Leaves and swings never stop the robot, also where they are drawn among walls or windows. Most arcs
+have the hinge for their centre; one drawn by hand, or by short straight lines, keeps as far from
+the hinge as the leaf is long.
+"""
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+from shapely.geometry import LineString
+from shapely.geometry import Point as Spot
+
+from satAOI_adapters.dxf_read.curves import Arc, Line, Path, Piece, Point
+from satAOI_adapters.dxf_read.features import Feature
+from satAOI_adapters.dxf_read.groups import tree_of
+from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
+
+LEAF_MM: Final = 1300.0
+"""No door leaf is longer."""
+
+LEAST_LEAF_MM: Final = 400.0
+"""No leaf of a door that people go through is shorter."""
+
+LEAF_SLACK_MM: Final = 60.0
+"""A leaf may start and end this far from its arc's centre and its arc: it has a thickness."""
+
+TIP_SLACK_MM: Final = 100.0
+"""An arc drawn by hand begins this close to the tip of its leaf."""
+
+LEAST_TURN_MM: Final = 120.0
+"""And its ends are farther from each other: the round end of a wall is narrower."""
+
+WIDEST_RAD: Final = math.radians(190)
+"""Doors are drawn open by up to half a turn."""
+
+FEWEST_SIDES: Final = 5
+"""An arc drawn by straight lines has at least so many."""
+
+
+@dataclass(frozen=True, slots=True)
+class Swing:
+    """A door as it is drawn.
+
+    Attributes:
+        hinge: About which it turns.
+        reach_mm: How long its leaf is.
+        shut_at: Where the leaf's tip may be when the door is shut.
+        drawn_by: The arc, the sides of the leaf and the short lines that join these.
+    """
+
+    hinge: Point
+    reach_mm: float
+    shut_at: tuple[Point, ...]
+    drawn_by: tuple[Piece, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Bow:
+    """What may be a door's arc: its pieces, and points along it from end to end."""
+
+    pieces: tuple[Piece, ...]
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Lines:
+    """Straight pieces, which may be leaves, and the tree of their ends, two a line."""
+
+    lines: Sequence[Line]
+    tree: "cKDTree"
+
+    def from_near(self, spot: Point, within_mm: float) -> list[tuple[Line, Point, Point]]:
+        """Lines that end near a point, each with that end and the other one."""
+        near = self.tree.query_ball_point(spot, within_mm)
+        found = [(self.lines[i // 2], i % 2) for i in near]
+        return [
+            (line, line.end, line.start) if is_end else (line, line.start, line.end)
+            for line, is_end in found
+        ]
+
+
+def swings(features: Sequence[Feature]) -> list[Swing]:
+    """The doors among what is drawn."""
+    paths = [path for feature in features for path in feature.paths]
+    bows = [bow for path in paths for bow in _bows(path)]
+    lines = [piece for path in paths for piece in path.pieces if isinstance(piece, Line)]
+    if not bows or not lines:
+        return []
+    known = _Lines(lines, tree_of([end for line in lines for end in (line.start, line.end)]))
+    found = (_about_centre(bow, known) or _by_hand(bow, known) for bow in bows)
+    return [swing for swing in found if swing is not None]
+
+
+def without_swings(features: Sequence[Feature], found: Sequence[Swing]) -> list[Feature]:
+    """Features less the doors found among them.
+
+    With a door go whatever else of the same paths lies within its circle: the other side of the
+    leaf.
+    """
+    doors_of: defaultdict[int, list[Swing]] = defaultdict(list)
+    for swing in found:
+        for piece in swing.drawn_by:
+            doors_of[id(piece)].append(swing)
+    kept = []
+    for feature in features:
+        paths = tuple(path for path in feature.paths if not _draws_door(path, doors_of))
+        if paths:
+            kept.append(replace(feature, paths=paths))
+    return kept
+
+
+def may_be_swing(arc: Arc) -> bool:
+    """Whether an arc is as large as those that doors draw about their hinges."""
+    radius_mm = math.hypot(*arc.u)
+    return arc.is_round and LEAST_LEAF_MM <= radius_mm <= LEAF_MM and arc.sweep_rad <= WIDEST_RAD
+
+
+def _bows(path: Path) -> Iterator[_Bow]:
+    for piece in path.pieces:
+        if isinstance(piece, Arc) and piece.sweep_rad <= WIDEST_RAD:
+            yield _Bow((piece,), tuple(piece.chords()))
+    if path.is_straight and not path.closed and len(path.pieces) >= FEWEST_SIDES:
+        yield _Bow(path.pieces, (path.start, *(piece.end for piece in path.pieces)))
+
+
+def _about_centre(bow: _Bow, known: _Lines) -> Swing | None:
+    """The door of an arc about the hinge, with any line from there to the arc as its leaf."""
+    (arc, *_) = bow.pieces
+    if not isinstance(arc, Arc) or not may_be_swing(arc):
+        return None
+    turn = LineString(bow.points)
+    leaves = [
+        (line, tip)
+        for line, _, tip in known.from_near(arc.centre, LEAF_SLACK_MM)
+        if turn.distance(Spot(tip)) <= LEAF_SLACK_MM
+    ]
+    if not leaves:
+        return None
+    # shut, the leaf is where it is not drawn
+    ends = (arc.start, arc.end)
+    free = [end for end in ends if all(math.dist(end, tip) > LEAF_SLACK_MM for _, tip in leaves)]
+    sides = [line for line, _ in leaves]
+    reach_mm = math.hypot(*arc.u)
+    return Swing(arc.centre, reach_mm, tuple(free or ends), (arc, *sides, *_caps(sides, known)))
+
+
+def _by_hand(bow: _Bow, known: _Lines) -> Swing | None:
+    """The door of an arc that begins at the tip of a leaf and keeps about its length away."""
+    for points in (bow.points, bow.points[::-1]):
+        tip, shut_at = points[0], points[-1]
+        if math.dist(tip, shut_at) < LEAST_TURN_MM:
+            continue
+        leaves = [
+            (line, hinge)
+            for line, _, hinge in known.from_near(tip, TIP_SLACK_MM)
+            if line not in bow.pieces and _keeps_away(points, hinge, _length_mm(line))
+        ]
+        if leaves:
+            sides = [line for line, _ in leaves]
+            (first, hinge), *_ = leaves
+            drawn_by = (*bow.pieces, *sides, *_caps(sides, known))
+            return Swing(hinge, _length_mm(first), (shut_at,), drawn_by)
+    return None
+
+
+def _keeps_away(points: Sequence[Point], hinge: Point, leaf_mm: float) -> bool:
+    return LEAST_LEAF_MM <= leaf_mm <= LEAF_MM and all(
+        abs(math.dist(hinge, point) - leaf_mm) <= LEAF_SLACK_MM for point in points
+    )
+
+
+def _length_mm(line: Line) -> float:
+    return math.dist(line.start, line.end)
+
+
+def _caps(leaves: Sequence[Line], known: _Lines) -> list[Line]:
+    """The short lines that run from a leaf's one side to its other."""
+    ends = [end for leaf in leaves for end in (leaf.start, leaf.end)]
+    touched = {i for end in ends for i in known.tree.query_ball_point(end, CLOSE_GAPS_MM)}
+    joining = [known.lines[i // 2] for i in touched if i % 2 == 0 and i + 1 in touched]
+    return [line for line in joining if _length_mm(line) <= LEAF_SLACK_MM]
+
+
+def _draws_door(path: Path, doors_of: Mapping[int, Sequence[Swing]]) -> bool:
+    """Whether a path is a door's arc or leaf, and shows nothing beyond the door's circle.
+
+    Args:
+        path: What is drawn.
+        doors_of: The doors to which a piece belongs, by the piece's identity.
+    """
+    return any(
+        _holds(swing, path) for piece in path.pieces for swing in doors_of.get(id(piece), ())
+    )
+
+
+def _holds(swing: Swing, path: Path) -> bool:
+    """Whether a path stays within a door's circle."""
+    return all(
+        math.dist(spot, swing.hinge) <= swing.reach_mm + LEAF_SLACK_MM
+        for piece in path.pieces
+        for spot in (piece.start, piece.end)
+    )
