@@ -246,8 +246,8 @@ class FloorPlan:
         is_alone = np.bincount(touching, minlength=solids.size) == 1
         shapely.prepare(self.floor)
         is_inside = is_alone & shapely.covers(self.floor, solids)
-        others_mm2 = shapely.union_all(solids[~is_inside]).intersection(self.floor).area
-        return float(shapely.area(solids[is_inside]).sum()) + others_mm2
+        others = shapely.union_all(solids[~is_inside]).intersection(self.floor)
+        return float(shapely.area(solids[is_inside]).sum() + others.area)
 
     def free_region(self) -> Region:
         """The floor less the obstacles: the ceiling of any area of interest."""
