@@ -230,7 +230,7 @@ def test_a_storey_of_a_model_is_drawn_as_its_plan() -> None:
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="the corpus of drawings is absent")
 @pytest.mark.parametrize(
     ("name", "options", "n_parts", "numbers"),
-    [("d02", {"units": "m"}, 6, []), ("d03", {}, 1, ["1", "1", "2", "2"])],
+    [("d02", {"units": "m"}, 6, []), ("d03", {}, 1, ["1", "1", "2", "2", "3", "3"])],
 )
 def test_a_drawing_of_other_people_is_drawn_with_all_that_was_understood(
     name: str, options: dict[str, str], n_parts: int, numbers: list[str]
