@@ -1,8 +1,11 @@
 """The figures of a run as data: one versioned schema."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Literal
+
+import numpy as np
 
 from satAOI_geo.aoi import Aoi
 from satAOI_geo.plan import Finding, FloorPlan
@@ -86,7 +89,7 @@ class LatticeFigures:
         lattice = found.lattice
         return cls(
             step_mm=lattice.step_mm,
-            origin_mm=_in_drawing_mm(found.plan, lattice.origin_mm),
+            origin_mm=_in_drawing_mm(found.plan, [lattice.origin_mm])[0],
             turn_deg=math.degrees(found.plan.frame.turn_rad),
             turn_source="walls" if found.settings.align_rad is None else "option",
             shape=lattice.shape,
@@ -130,15 +133,20 @@ class PoseFigures:
     a2_deg: float
 
     @classmethod
-    def of(cls, found: Search, state: State) -> "PoseFigures":
-        """A state in the drawing's axes."""
-        plan, pose = found.plan, found.lattice.pose(*state)
-        return cls(
-            xy_mm=_in_drawing_mm(plan, (pose.x_mm, pose.y_mm)),
-            node=(state.iy, state.ix),
-            a1_deg=math.degrees(pose.a1_rad + plan.frame.turn_rad) % 360.0,
-            a2_deg=math.degrees(pose.a2_rad),
-        )
+    def of(cls, found: Search, states: Sequence[State]) -> list["PoseFigures"]:
+        """Some states in the drawing's axes."""
+        poses = [found.lattice.pose(*state) for state in states]
+        turn_rad = found.plan.frame.turn_rad
+        at_mm = _in_drawing_mm(found.plan, [(pose.x_mm, pose.y_mm) for pose in poses])
+        return [
+            cls(
+                xy_mm=xy_mm,
+                node=(state.iy, state.ix),
+                a1_deg=math.degrees(pose.a1_rad + turn_rad) % 360.0,
+                a2_deg=math.degrees(pose.a2_rad),
+            )
+            for state, pose, xy_mm in zip(states, poses, at_mm, strict=True)
+        ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -220,16 +228,20 @@ class PatchFigures:
     blocker_layer: str
 
     @classmethod
-    def of(cls, plan: FloorPlan, patch: Patch) -> "PatchFigures":
-        """A patch with its label in the drawing's axes."""
-        return cls(
-            reason=patch.reason.value,
-            area_m2=patch.area_mm2 / MM2_PER_M2,
-            label_mm=_in_drawing_mm(plan, patch.label_mm),
-            narrow=patch.narrow,
-            blocker_handle=patch.blocker.handle if patch.blocker else "",
-            blocker_layer=patch.blocker.layer if patch.blocker else "",
-        )
+    def of(cls, plan: FloorPlan, patches: Sequence[Patch]) -> list["PatchFigures"]:
+        """Some patches with their labels in the drawing's axes."""
+        at_mm = _in_drawing_mm(plan, [patch.label_mm for patch in patches])
+        return [
+            cls(
+                reason=patch.reason.value,
+                area_m2=patch.area_mm2 / MM2_PER_M2,
+                label_mm=label_mm,
+                narrow=patch.narrow,
+                blocker_handle=patch.blocker.handle if patch.blocker else "",
+                blocker_layer=patch.blocker.layer if patch.blocker else "",
+            )
+            for patch, label_mm in zip(patches, at_mm, strict=True)
+        ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -271,13 +283,14 @@ def report_of(
     }
     connected = {rule: ConnectedFigures.of(n_nodes[rule], aoi) for rule, aoi in areas.items()}
     numbers = {zone.label: number for number, zone in enumerate(zones, start=1)}
+    (started,) = PoseFigures.of(found, [found.start.state])
     return Report(
         input=InputFigures.of(plan),
         robot=RobotFigures.of(found.robot, found.settings.clearance_mm),
         lattice=LatticeFigures.of(found),
         floor=floor,
         start=StartFigures(
-            **asdict(PoseFigures.of(found, found.start.state)),
+            **asdict(started),
             source=found.start.source,
             n_components=found.start.n_components,
         ),
@@ -296,25 +309,31 @@ def report_of(
                 number=numbers[zone.label],
                 area_m2=zone.area_mm2 / MM2_PER_M2,
                 n_nodes=zone.n_nodes,
-                set_down=PoseFigures.of(found, zone.set_down),
+                set_down=set_down,
             )
-            for zone in zones
+            for zone, set_down in zip(
+                zones, PoseFigures.of(found, [zone.set_down for zone in zones]), strict=True
+            )
         ],
         set_downs=[
             SetDownFigures(
                 zone=numbers.get(one.label),
                 gain_m2=one.gain_mm2 / MM2_PER_M2,
-                set_down=PoseFigures.of(found, one.state),
+                set_down=set_down,
             )
-            for one in set_downs
+            for one, set_down in zip(
+                set_downs, PoseFigures.of(found, [one.state for one in set_downs]), strict=True
+            )
         ],
-        unreached=[PatchFigures.of(plan, patch) for patch in patches],
+        unreached=PatchFigures.of(plan, patches),
         findings=list(plan.findings),
         timing_s=timing_s,
     )
 
 
-def _in_drawing_mm(plan: FloorPlan, at_mm: tuple[float, float]) -> tuple[float, float]:
-    """A point of the plan in the drawing's axes."""
-    x_mm, y_mm = plan.frame.to_drawing_mm(at_mm).tolist()
-    return x_mm, y_mm
+def _in_drawing_mm(
+    plan: FloorPlan, points_mm: Sequence[tuple[float, float]]
+) -> list[tuple[float, float]]:
+    """Points of the plan in the drawing's axes."""
+    drawn_mm = plan.frame.to_drawing_mm(np.reshape(points_mm, (-1, 2)))
+    return [(x_mm, y_mm) for x_mm, y_mm in drawn_mm.tolist()]
