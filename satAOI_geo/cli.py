@@ -98,15 +98,15 @@ BATCH_EPILOG: Final = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the program and return its exit code; a known error becomes one line of talk."""
     from satAOI_adapters import linear_algebra
-    from satAOI_adapters.collector import collector_at_leisure, leave_at_once
+    from satAOI_adapters.collector import leave_at_once, look_seldom
     from satAOI_adapters.terminal import accept_any_text, say_error
 
     accept_any_text()
+    look_seldom()
     leave_at_once()
     linear_algebra.without_threads()
     try:
-        with collector_at_leisure():
-            code = commands.main(arguments, prog_name="satAOI-geo", standalone_mode=False)
+        code = commands.main(arguments, prog_name="satAOI-geo", standalone_mode=False)
         return int(code or DONE)
     except click.ClickException as error:
         say_error(error.format_message())

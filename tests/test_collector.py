@@ -1,30 +1,35 @@
-"""The collector of circular garbage at rest, at leisure, and as it was."""
+"""The collector of circular garbage at rest, seldom at work, and as it was."""
 
 import gc
 import subprocess
 import sys
-from collections.abc import Callable
-from contextlib import AbstractContextManager
+from pathlib import Path
 
 import pytest
 
-from satAOI_adapters.collector import collector_at_leisure, collector_at_rest
+from satAOI_adapters.collector import collector_at_rest
+from tests.command_line import ROOT, drawn_room
 
 
-@pytest.mark.parametrize("block", [collector_at_rest, collector_at_leisure])
-def test_after_an_error_the_collector_is_as_it_was(
-    block: Callable[[], AbstractContextManager[None]],
-) -> None:
-    before = gc.isenabled(), gc.get_threshold()
-    with pytest.raises(ZeroDivisionError), block():
+def test_after_an_error_the_collector_is_as_it_was() -> None:
+    before = gc.isenabled()
+    with pytest.raises(ZeroDivisionError), collector_at_rest():
         _ = 1 / 0
-    assert (gc.isenabled(), gc.get_threshold()) == before
+    assert gc.isenabled() == before
 
 
-def test_at_leisure_it_looks_seldom() -> None:
-    looks_after, *_ = gc.get_threshold()
-    with collector_at_leisure():
-        assert gc.get_threshold()[0] > 10 * looks_after
+def test_a_run_on_a_small_plan_ends_before_circular_garbage_was_looked_for(tmp_path: Path) -> None:
+    plan = drawn_room(tmp_path / "room.dxf")
+    output = tmp_path / "aoi.dxf"
+    code = (
+        "import gc, sys; sys.path[:0] = ['.', 'adapters']; from satAOI_geo.cli import main; "
+        "looks = []; gc.callbacks.append(lambda *look: looks.append(look)); "
+        f"assert not main([{str(plan)!r}, '-o', {str(output)!r}, '-q']); print(len(looks))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.split() == ["0"]
 
 
 def test_leaving_at_once_loses_no_line_and_no_farewell() -> None:

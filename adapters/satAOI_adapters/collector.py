@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Final
 
-SELDOM: Final = (100_000, 50, 50)
+SELDOM: Final = (500_000, 10, 50)
 """When the collector looks: after so many new objects, at older ones every so many times."""
 
 
@@ -26,15 +26,13 @@ def collector_at_rest() -> Iterator[None]:
             gc.enable()
 
 
-@contextmanager
-def collector_at_leisure() -> Iterator[None]:
-    """While this lasts, circular garbage is looked for seldom; afterwards all is as it was."""
-    before = gc.get_threshold()
+def look_seldom() -> None:
+    """Let circular garbage be looked for seldom from now on.
+
+    There is no way back: with the collector as busy as before, its next look would be at all that
+    has come up meanwhile, where the program is about to end.
+    """
     gc.set_threshold(*SELDOM)
-    try:
-        yield
-    finally:
-        gc.set_threshold(*before)
 
 
 def leave_at_once() -> None:
