@@ -61,7 +61,8 @@ class Move:
         swing: Swing number of the pose it starts from.
         to_a1: Direction number of the pose it ends at.
         to_swing: Swing number of the pose it ends at.
-        unless_vehicle: Nodes at which it touches nothing but perhaps with the vehicle on its way.
+        unless_vehicle: Nodes at which it touches nothing but perhaps with the vehicle on its way:
+            those in all three.
         sweep: What the vehicle sweeps.
     """
 
@@ -69,7 +70,7 @@ class Move:
     swing: int
     to_a1: int
     to_swing: int
-    unless_vehicle: Words
+    unless_vehicle: tuple[Words, Words, Words]
     sweep: Part
 
     def allowed(self, engine: Engine, rows: BoolArray | None = None) -> Words:
@@ -79,7 +80,8 @@ class Move:
         """
         allowed = engine.blocked(self.sweep, rows)
         np.invert(allowed, out=allowed)
-        allowed &= self.unless_vehicle
+        for nodes in self.unless_vehicle:
+            allowed &= nodes
         if rows is not None:
             allowed[~rows] = 0
         return allowed
@@ -100,12 +102,14 @@ def free_space(
     def fill(a1: int) -> IntArray:
         capsule = lattice.no_nodes()
         of_capsule = engine.block(capsule, robot.capsule(directions[a1]))
-        words[a1] = capsule
         barred = []
         for swing, vehicle in enumerate(_vehicles(robot, lattice, a1)):
-            of_vehicle = engine.block(words[a1, swing], vehicle)
+            # slice by slice, as long as the processor has it at hand
+            nodes = words[a1, swing]
+            nodes[:] = capsule
+            of_vehicle = engine.block(nodes, vehicle)
+            np.invert(nodes, out=nodes)
             barred += [(swing, of_capsule), (swing, of_vehicle)]
-        np.invert(words[a1], out=words[a1])
         return np.concatenate(
             [np.column_stack((np.full(len(steps), swing), steps)) for swing, steps in barred]
         )
@@ -132,22 +136,21 @@ def moves(engine: Engine, robot: Robot, space: FreeSpace, a1: int) -> Iterator[M
     about_pivot = turned(vehicles, pivot_mm, turn_rad)
     orbits = carried(vehicles, pivot_mm, turn_rad)
 
+    # a swing range of a full turn is a ring: its last swing is beside its first
+    is_ring = n_swings == n_directions
     for swing in range(n_swings):
-        free = space.words[a1, swing]
-        ends = free & space.words[next_a1, swing]
-        ends &= arm_turns
+        free, next_free = space.words[a1, swing], space.words[next_a1]
+        ends = free, next_free[swing], arm_turns
         yield Move(a1, swing, next_a1, swing, ends, about_disc[swing])
 
-        # a swing range of a full turn is a ring: its last swing is beside its first
-        wider = _neighbour(swing + 1, n_swings, ring=n_swings == n_directions)
+        wider = _neighbour(swing + 1, n_swings, ring=is_ring)
         if wider is not None:
-            ends = free & space.words[a1, wider]
+            ends = free, free, space.words[a1, wider]
             yield Move(a1, swing, a1, wider, ends, about_pivot[swing])
 
-        narrower = _neighbour(swing - 1, n_swings, ring=n_swings == n_directions)
+        narrower = _neighbour(swing - 1, n_swings, ring=is_ring)
         if narrower is not None:
-            ends = free & space.words[next_a1, narrower]
-            ends &= arm_turns
+            ends = free, next_free[narrower], arm_turns
             yield Move(a1, swing, next_a1, narrower, ends, orbits[swing])
 
 

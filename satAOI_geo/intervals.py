@@ -176,9 +176,9 @@ def _nearest(rows: BoolArray | None, n_rows: int) -> IntArray:
     """
     number = np.arange(n_rows)
     if rows is None:
-        return np.stack((number, number))
+        return np.array((number, number))
     ahead = np.minimum.accumulate(np.where(rows, number, n_rows)[::-1])[::-1]
-    return np.stack((ahead, np.maximum.accumulate(np.where(rows, number, -1))))
+    return np.array((ahead, np.maximum.accumulate(np.where(rows, number, -1))))
 
 
 def _pieces(shape: Shape) -> list[FloatArray]:
@@ -199,7 +199,7 @@ def _in_lattice_units(points_mm: FloatArray, lattice: Lattice) -> FloatArray:
 def _from_lowest(corners: FloatArray) -> FloatArray:
     """The same ring of corners, starting at the lowest, then leftmost one."""
     lowest = np.lexsort((corners[:, 0], corners[:, 1]))[0]
-    return np.roll(corners, -lowest, axis=0)
+    return np.concatenate((corners[lowest:], corners[:lowest]))
 
 
 @kernel(

@@ -135,13 +135,13 @@ class Meeting:
         found = np.empty((first_a[-1] - first_a[0] + first_b[-1] - first_b[0], 3), dtype=np.int32)
         return found[: _links(allowed, first_a, first_b, self.end, found)]
 
-    def rows_apart(self, parents: Int32Array, ends: Words) -> BoolArray:
+    def rows_apart(self, parents: Int32Array, ends: tuple[Words, Words, Words]) -> BoolArray:
         """The rows in which a move could join two components of the forest `parents`.
 
-        `ends` are the nodes at which both ends of the move are free.
+        It can be made at most at the nodes in all three sets `ends`, where both its ends are free.
         """
-        apart = np.empty(ends.shape[0], dtype=np.bool_)
-        _rows_apart(parents, ends, self.first_a, self.first_b, self.end, apart)
+        apart = np.empty(self.first_a.size - 1, dtype=np.bool_)
+        _rows_apart(parents, *ends, self.first_a, self.first_b, self.end, apart)
         return apart
 
 
@@ -245,26 +245,28 @@ def _links(
 
 
 @kernel(
-    "void(const int32[:], const uint64[:, :], const int64[:], const int64[:], const int32[:], "
-    "bool[:])"
+    "void(const int32[:], const uint64[:, :], const uint64[:, :], const uint64[:, :], "
+    "const int64[:], const int64[:], const int32[:], bool[:])"
 )
 def _rows_apart(
     parents: Int32Array,
-    ends: Words,
+    free: Words,
+    to_free: Words,
+    between: Words,
     first_a: IntArray,
     first_b: IntArray,
     end: Int32Array,
     apart: BoolArray,
 ) -> None:
-    """Write for each row whether two runs that meet at a node have different roots.
+    """Write for each row whether two runs that meet at a node of three sets have different roots.
 
     It reads the forest only, which others may be changing: a root that is out of date makes two
     runs look apart that no longer are, never the other way round.
     """
-    for iy in range(ends.shape[0]):
+    for iy in range(free.shape[0]):
         apart[iy] = False
         a, b = first_a[iy], first_b[iy]
-        ix = _next_bit(ends[iy], 0)
+        ix = _next_common_bit(free[iy], to_free[iy], between[iy], 0)
         while ix >= 0:
             while end[a] < ix:
                 a += 1
@@ -273,7 +275,7 @@ def _rows_apart(
             if _found(parents, a) != _found(parents, b):
                 apart[iy] = True
                 break
-            ix = _next_bit(ends[iy], min(end[a], end[b]) + 1)
+            ix = _next_common_bit(free[iy], to_free[iy], between[iy], min(end[a], end[b]) + 1)
 
 
 @helper
@@ -415,6 +417,22 @@ def _next_bit(row: Words, begin: int) -> int:
         if word == row.size:
             return -1
         bits = row[word]
+    return word * 64 + lowest_bit(bits)
+
+
+@helper
+def _next_common_bit(a: Words, b: Words, c: Words, begin: int) -> int:
+    """The first bit from `begin` on that is set in three rows of words, or -1."""
+    word = begin >> 6
+    if word >= a.size:
+        return -1
+    bits = a[word] & b[word] & c[word]
+    bits = bits >> np.uint64(begin & 63) << np.uint64(begin & 63)
+    while not bits:
+        word += 1
+        if word == a.size:
+            return -1
+        bits = a[word] & b[word] & c[word]
     return word * 64 + lowest_bit(bits)
 
 

@@ -122,11 +122,12 @@ def test_runs_are_apart_in_the_rows_in_which_some_link_would_join_two_components
 ) -> None:
     runs = runs_of(*drawn)
     meeting = Meeting.of(runs, (0, 0), (0, 1))
-    ends = bits(drawn[0][0] & drawn[1][0])
-    links = meeting.links(ends)
+    some = np.random.default_rng(seed).random(drawn[0][0].shape) < 0.9
+    ends = [drawn[0][0], drawn[1][0], some]
+    links = meeting.links(bits(np.logical_and.reduce(ends)))
     parents = np.arange(runs.begin.size, dtype=np.int32)
     unite(parents, links[np.random.default_rng(seed).random(len(links)) < share])
-    apart = meeting.rows_apart(parents, ends)
+    apart = meeting.rows_apart(parents, tuple(map(bits, ends)))
     root = roots(parents)
     expected = {runs.rows()[a] for a, b, _ in links.tolist() if root[a] != root[b]}
     assert set(np.flatnonzero(apart).tolist()) == expected
