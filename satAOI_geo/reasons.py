@@ -115,29 +115,31 @@ def unreached(
     whole = _Regions(free, Indexed(aoi.outlines), Indexed(upper.outlines))
     patches: list[Patch] = []
     narrow: list[Patch] = []
-    at_seams: list[_Piece] = []
+    unfinished: list[_Piece] = []
     row_cuts = cuts(found.lattice.n_rows)
     for number, cut in enumerate(row_cuts, start=1):
         row = _TileRow.of(found, cut, whole)
         for pieces, strips in run_threads(row.left_over, len(row.tiles)):
-            patches += [blockers.patch(one.region, one.reason) for one in pieces if not one.at_seam]
-            at_seams += [one for one in pieces if one.at_seam]
+            patches += [blockers.patch(one) for one in pieces if not one.at_seam]
+            unfinished += [one for one in pieces if one.at_seam]
             if strips.area > 0:
-                narrow.append(blockers.patch(strips, Reason.DISC, narrow=True))
+                narrow.append(blockers.patch(_Piece(Reason.DISC, strips), narrow=True))
+        joined = _joined(unfinished, row.tiles[0].bounds_mm[-1])
+        patches += [blockers.patch(one) for one in joined if not one.at_seam]
+        unfinished = [one for one in joined if one.at_seam]
         if progress is not None:
             progress(number / len(row_cuts))
         if len(row_cuts) > 1:
             give_back()
-    patches += [blockers.patch(region, reason) for reason, region in _joined(at_seams)]
     return (*sorted(patches, key=_largest_first), *sorted(narrow, key=_largest_first))
 
 
 class _Piece(NamedTuple):
-    """A piece of a patch, and whether it ends at a seam of its tile."""
+    """A piece of a patch, and whether it ends at a seam where another one may follow."""
 
     reason: Reason
-    region: Polygon
-    at_seam: bool
+    region: Region
+    at_seam: bool = False
 
 
 class _Regions(NamedTuple):
@@ -293,24 +295,26 @@ def put_together(pieces: Geometries) -> BaseGeometry:
         return shapely.union_all(pieces)
 
 
-def _joined(at_seams: list[_Piece]) -> Iterator[tuple[Reason, Polygon]]:
-    """The patches that pieces make once those of a reason are joined across the seams."""
-    for reason in Reason:
-        own = [piece.region for piece in at_seams if piece.reason is reason]
-        yield from ((reason, region) for region in _unions(own))
+def _joined(pieces: list[_Piece], top_mm: float) -> list[_Piece]:
+    """Pieces, those of a reason that meet made one; more may follow above the top."""
+    return [
+        _Piece(reason, region, region.bounds[-1] >= top_mm)
+        for reason in Reason
+        for region in _unions([piece.region for piece in pieces if piece.reason is reason])
+    ]
 
 
-def _unions(regions: list[Polygon]) -> Iterator[Polygon]:
+def _unions(regions: list[Region]) -> Iterator[Polygon]:
     """Polygons, those that meet made one; a union of all at once would take gigabytes."""
     members = np.array(regions, dtype=object)
     pairs = shapely.STRtree(members).query(members, predicate="intersects").T
     parents = np.arange(len(regions), dtype=np.int32)
     unite(parents, pairs.astype(np.int32))
-    groups: defaultdict[int, list[Polygon]] = defaultdict(list)
+    groups: defaultdict[int, list[Region]] = defaultdict(list)
     for region, group in zip(regions, roots(parents).tolist(), strict=True):
         groups[group].append(region)
     for group in groups.values():
-        yield from polygons_in([shapely.union_all(group)])
+        yield from map(_compact, polygons_in([shapely.union_all(group)]))
 
 
 def _largest_first(patch: Patch) -> tuple[float, tuple[float, float]]:
@@ -331,8 +335,9 @@ class _Blockers:
         self._tree = shapely.STRtree(regions)
         self._edge = plan.floor.boundary
 
-    def patch(self, region: Region, reason: Reason, *, narrow: bool = False) -> Patch:
+    def patch(self, piece: _Piece, *, narrow: bool = False) -> Patch:
         """A patch with its label and, for what is too tight, what it is tight against."""
+        reason, region, _ = piece
         label = max(polygons_in([region]), key=lambda p: p.area).representative_point()
         in_the_way = None if reason in (Reason.PATH, Reason.ZONE) else self._nearest(label)
         wkb: bytes = shapely.to_wkb(region)
