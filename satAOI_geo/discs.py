@@ -21,7 +21,7 @@ from satAOI_geo.kernels import filled, helper, kernel
 from satAOI_geo.lattice import Words
 from satAOI_geo.nodes import Nodes, from_above, from_below, from_left, from_right
 from satAOI_geo.plan import BoolArray, FloatArray, IntArray
-from satAOI_geo.runs import Int32Array, rows_of
+from satAOI_geo.runs import lowest_bit, rows_of
 
 TIE = 1e-12
 """Share of a squared radius within which a squared distance counts as equal to it: far more than
@@ -60,8 +60,7 @@ def covered_cells(reached: Nodes, radius: float) -> Nodes:
     rows = np.arange(math.floor(math.sqrt(square)) + 1)
     half_widths = np.floor(np.sqrt(square - rows * rows)).astype(np.int64)
     covered = np.zeros_like(reached.words)
-    runs = rows_of(reached)
-    _cover(runs.first, runs.begin, runs.end, half_widths, covered, reached.n_columns)
+    _cover(reached.words, half_widths, covered, reached.n_columns)
     return Nodes(covered, reached.n_columns)
 
 
@@ -212,26 +211,59 @@ def _chained(values: FloatArray, order: IntArray, apart: BoolArray) -> IntArray:
     return numbers
 
 
-@kernel("void(const int64[:], const int32[:], const int32[:], const int64[:], uint64[:, :], int64)")
-def _cover(
-    first: IntArray,
-    begin: Int32Array,
-    end: Int32Array,
-    half_widths: IntArray,
-    covered: Words,
-    n_columns: int,
-) -> None:
+@kernel("void(const uint64[:, :], const int64[:], uint64[:, :], int64)")
+def _cover(reached: Words, half_widths: IntArray, covered: Words, n_columns: int) -> None:
     """Set the cells that lie within half_widths[d] columns of a reached node d rows away.
 
-    The reached nodes are given as runs, see `runs.SliceRuns`.
+    What a node covers in rows below its own the node below it covers, too, if it is reached: it
+    is nearer. So only nodes above unreached ones are looked at for these, and likewise upwards.
     """
-    n_rows = covered.shape[0]
+    n_rows = reached.shape[0]
     for iy in range(n_rows):
-        for row in range(max(0, iy - half_widths.size + 1), min(n_rows, iy + half_widths.size)):
-            width = half_widths[abs(row - iy)]
-            for run in range(first[row], first[row + 1]):
-                left, right = max(0, begin[run] - width), min(n_columns - 1, end[run] + width)
-                set_bits(covered[iy], left, right)
+        for word in range(reached.shape[1]):
+            bits = reached[iy, word]
+            if bits:
+                below = reached[iy - 1, word] if iy > 0 else np.uint64(0)
+                above = reached[iy + 1, word] if iy + 1 < n_rows else np.uint64(0)
+                _cover_rows(covered, iy, iy + 1, 1, word, bits, half_widths, n_columns)
+                _cover_rows(covered, iy, -1, -1, word, bits & ~below, half_widths, n_columns)
+                _cover_rows(covered, iy, n_rows, 1, word, bits & ~above, half_widths, n_columns)
+
+
+@helper
+def _cover_rows(
+    covered: Words,
+    iy: int,
+    stop: int,
+    step: int,
+    word: int,
+    bits: np.uint64,
+    half_widths: IntArray,
+    n_columns: int,
+) -> None:
+    """Set the cells about the nodes of one word of row iy, in this row and in those after it.
+
+    Args:
+        covered: The cells.
+        iy: A row.
+        stop: The row before which to end.
+        step: 1 for the rows above, -1 for those below.
+        word: Number of the word.
+        bits: The word.
+        half_widths: See `_cover`.
+        n_columns: Columns of the lattice.
+    """
+    n_rows = min(abs(stop - iy), half_widths.size)
+    while bits:
+        low = lowest_bit(bits)
+        begin = 64 * word + low
+        end = begin + lowest_bit(~(bits >> np.uint64(low))) - 1
+        for away in range(n_rows):
+            width = half_widths[away]
+            left, right = max(0, begin - width), min(n_columns - 1, end + width)
+            set_bits(covered[iy + step * away], left, right)
+        # the carry of the sum runs through the stretch
+        bits &= bits + (np.uint64(1) << np.uint64(low))
 
 
 @kernel("void(float64[:, :, :], int64[:], float64)")
