@@ -159,13 +159,16 @@ def set_downs(
 
 @dataclass(frozen=True, slots=True)
 class _Gains:
-    """What cells each set could gain at most; that only shrinks as more are covered.
+    """How many cells each set could gain at most; gains only shrink as more cells are covered.
+
+    So an old gain is a bound, and need only be looked at again when it comes first.
 
     Attributes:
         boxes: See `Components`.
-        at_most: Shape (n,), of each set; to be lowered where less is known to be left for it.
-        heap: Shape (n,), the sets; neither of those at 2k + 1 and 2k + 2 comes before that at k
-            once all but the first are in order.
+        at_most: Shape (n,), of each set. That of the first set may be lowered by whoever knows
+            better.
+        heap: Shape (n,), the sets: that at k comes before those at 2k + 1 and 2k + 2, but for the
+            first, which is put in its place when it is asked for.
     """
 
     boxes: npt.NDArray[np.int64]
@@ -174,14 +177,11 @@ class _Gains:
 
     @classmethod
     def of(cls, boxes: npt.NDArray[np.int64], at_most: FloatArray) -> "_Gains":
-        """The sets, all in order: the greatest first, of equals that of the lowest number."""
+        """The sets in order."""
         return cls(boxes, at_most, np.argsort(-at_most, kind="stable").astype(np.int32))
 
     def greatest(self, todo: Words, radius: float) -> int:
-        """The set that could gain most of the cells to do, in a window of them a radius wider.
-
-        Of the first set alone the bound may have been lowered since.
-        """
+        """The set that could gain the most of the cells to do, of equals that of lowest number."""
         _lower(self.heap, self.at_most, self.boxes, math.ceil(radius), todo)
         return int(self.heap[0])
 
@@ -238,7 +238,8 @@ def set_down(components: PoseComponents, label: int) -> State:
 
 def _set_downs_of(components: PoseComponents, labels: list[int]) -> list[State]:
     """Where the robot is set down for each of some components, see `set_down`."""
-    deepest = components.stretches.deepest(np.array(labels), components.lattice.n_columns)
+    sets = np.array(labels, dtype=np.int64)
+    deepest = components.stretches.deepest(sets, components.lattice.n_columns)
     return [
         components.straightest(iy, ix, label)
         for (iy, ix), label in zip(deepest.tolist(), labels, strict=True)
