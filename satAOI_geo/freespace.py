@@ -78,13 +78,10 @@ class Move:
 
         Where `rows`, shape (n_rows,), are asked for, only their nodes.
         """
-        allowed = engine.blocked(self.sweep, rows)
-        np.invert(allowed, out=allowed)
-        for nodes in self.unless_vehicle:
-            allowed &= nodes
-        if rows is not None:
-            allowed[~rows] = 0
-        return allowed
+        words = engine.blocked(self.sweep, rows)
+        asked = np.ones(len(words), dtype=np.bool_) if rows is None else rows
+        _allow(words, *self.unless_vehicle, asked)
+        return words
 
 
 def free_space(
@@ -177,6 +174,18 @@ def run_threads(
             if progress is not None:
                 progress(len(answers) / n_jobs)
     return answers
+
+
+@kernel(
+    "void(uint64[:, :], const uint64[:, :], const uint64[:, :], const uint64[:, :], const bool[:])"
+)
+def _allow(words: Words, a: Words, b: Words, c: Words, rows: BoolArray) -> None:
+    """Turn what is blocked into what three sets have besides, in some rows; none in the others."""
+    n_rows, n_words = words.shape
+    for iy in range(n_rows):
+        for word in range(n_words):
+            both = a[iy, word] & b[iy, word] & c[iy, word] if rows[iy] else np.uint64(0)
+            words[iy, word] = both & ~words[iy, word]
 
 
 @kernel("void(const uint64[:, :, :], const int64[:, :], int64, uint64[:, :, :])")
