@@ -31,7 +31,7 @@ from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
 from satAOI_adapters.dxf_read.plans import Drawn, chosen, clusters, within
 from satAOI_adapters.dxf_read.shapes import middle_line
 from satAOI_adapters.dxf_read.survey import Survey, survey
-from satAOI_adapters.dxf_read.swings import swings, without_swings
+from satAOI_adapters.dxf_read.swings import parted, swings
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_adapters.dxf_read.unclassified import unclassified
 from satAOI_adapters.dxf_read.windows import window_findings, windows
@@ -81,13 +81,13 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
     frame = drawing.frame()
     start_mm, start_findings = _start(drawing, frame, options)
     everything = drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
-    drawn, choice = _chosen(everything, options, start_mm, frame)
+    chosen_part, choice = _chosen(everything, options, start_mm, frame)
+    drawn = _with_doors(chosen_part)
     terms = Terms(frame, options.close_gaps_mm, drawing.is_named, _region_mm(options, frame))
     standing = _standing(drawn, terms, drawing)
     sills = spans(drawn[Meaning.DOOR], [o.region() for o in standing.obstacles])
     floor = floor_of(drawn[Meaning.FLOOR], standing.obstacles, sills, terms)
-    of_no_layer = without_swings(drawn[None], swings(drawn[None]))
-    others = unclassified(of_no_layer, floor.region, standing.obstacles)
+    others = unclassified(drawn[None], floor.region, standing.obstacles)
     plan = FloorPlan(
         floor=floor.region,
         obstacles=_on(floor.region, (*standing.obstacles, *others.obstacles)),
@@ -145,6 +145,12 @@ def _left_out(count: int, what: str) -> tuple[Finding, ...]:
     )
 
 
+def _with_doors(drawn: Drawn) -> Drawn:
+    """What is drawn, with doors on nameless layers among the doors."""
+    rest, doors = parted(drawn[None], swings(drawn[None]))
+    return {**drawn, None: rest, Meaning.DOOR: [*drawn[Meaning.DOOR], *doors]}
+
+
 def _standing(drawn: Drawn, terms: Terms, drawing: Survey) -> Standing:
     """The obstacles of all kinds that layers name."""
     by_kind: dict[Kind, list[Feature]] = {kind: [] for kind in Kind}
@@ -168,13 +174,13 @@ def _walls(
 ) -> Standing:
     """The walls: what is drawn on their layers and on those of doors, open where doors are."""
     doors_on_walls = swings(on_walls)
-    drawn_as_walls = without_swings(on_walls, doors_on_walls)
+    drawn_as_walls, _ = parted(on_walls, doors_on_walls)
     drawn_as_walls, of_dashes = without_dashed(drawn_as_walls, drawing.dashed)
     faces = _lines(drawn_as_walls)
     on_door_layers = partitions(drawn[Meaning.DOOR], faces, drawing.door_blocks)
     glazed = windows(drawn[Meaning.DOOR], faces, drawing.door_blocks)
     edges = _lines(drawn[Meaning.FLOOR], only_closed=True)
-    doors = [*doors_on_walls, *swings(drawn[Meaning.DOOR]), *swings(drawn[None])]
+    doors = [*doors_on_walls, *swings(drawn[Meaning.DOOR])]
     of_doors = [*_lines(drawn[Meaning.DOOR]), *(span.line for door in doors for span in shut(door))]
     whole = walls([*drawn_as_walls, *on_door_layers, *glazed], columns, edges, of_doors, terms)
     standing = with_openings(whole, doors, drawing.masks_of_doors(terms.frame), terms)

@@ -98,8 +98,10 @@ def swings(features: Sequence[Feature]) -> list[Swing]:
     return [swing for swing in found if swing is not None]
 
 
-def without_swings(features: Sequence[Feature], found: Sequence[Swing]) -> list[Feature]:
-    """Features less the doors found among them.
+def parted(
+    features: Sequence[Feature], found: Sequence[Swing]
+) -> tuple[list[Feature], list[Feature]]:
+    """Features less the doors found among them, and what draws these.
 
     With a door go whatever else of the same paths lies within its circle: the other side of the
     leaf.
@@ -108,12 +110,16 @@ def without_swings(features: Sequence[Feature], found: Sequence[Swing]) -> list[
     for swing in found:
         for piece in swing.drawn_by:
             doors_of[id(piece)].append(swing)
-    kept = []
+    rest: list[Feature] = []
+    doors: list[Feature] = []
     for feature in features:
-        paths = tuple(path for path in feature.paths if not _draws_door(path, doors_of))
-        if paths:
-            kept.append(replace(feature, paths=paths))
-    return kept
+        is_door = [_draws_door(path, doors_of) for path in feature.paths]
+        for part, wanted in ((rest, False), (doors, True)):
+            of_part = zip(feature.paths, is_door, strict=True)
+            paths = tuple(path for path, is_one in of_part if is_one is wanted)
+            if paths:
+                part.append(replace(feature, paths=paths))
+    return rest, doors
 
 
 def may_be_swing(arc: Arc) -> bool:
@@ -164,9 +170,10 @@ def _by_hand(bow: _Bow, known: _Lines) -> Swing | None:
         ]
         if leaves:
             sides = [line for line, _ in leaves]
-            (first, hinge), *_ = leaves
+            # of the two sides of a leaf the one that fits better, in whatever order they are drawn
+            _, hinge = min((abs(math.dist(h, shut_at) - _length_mm(line)), h) for line, h in leaves)
             drawn_by = (*bow.pieces, *sides, *_caps(sides, known))
-            return Swing(hinge, _length_mm(first), (shut_at,), drawn_by)
+            return Swing(hinge, math.dist(hinge, tip), (shut_at,), drawn_by)
     return None
 
 
