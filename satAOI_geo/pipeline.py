@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from satAOI_geo.aoi import Aoi, area
 from satAOI_geo.bands import Crew
 from satAOI_geo.lattice import Lattice
+from satAOI_geo.memory import give_back
 from satAOI_geo.plan import FloorPlan
 from satAOI_geo.progress import Progress, Stopwatch
 from satAOI_geo.reasons import Patch, unreached
@@ -109,6 +110,9 @@ def area_of_interest(
         waiting = beside.submit(of_patches)
         all_zones, downs = of_zones()
         patches = waiting.result()
+    if len(found.pose.bands) > 1:
+        # what both threads took is free now, and figures of a large floor take room, too
+        give_back()
     report = report_of(
         found,
         areas=areas,
