@@ -13,7 +13,7 @@ import numpy.typing as npt
 from satAOI_geo.intervals import set_bits
 from satAOI_geo.kernels import helper, kernel
 from satAOI_geo.lattice import Lattice, Words
-from satAOI_geo.nodes import Nodes, from_right
+from satAOI_geo.nodes import Nodes, from_right, n_bits
 from satAOI_geo.plan import BoolArray, IntArray
 
 Int32Array: TypeAlias = npt.NDArray[np.int32]
@@ -192,7 +192,7 @@ def _count_runs(free: Words, right: Words, first: IntArray) -> None:
         n = 0
         for word in range(free.shape[1]):
             stepped = right[iy, word]
-            n += _n_bits(free[iy, word] & ~(stepped << np.uint64(1) | carry))
+            n += n_bits(free[iy, word] & ~(stepped << np.uint64(1) | carry))
             carry = stepped >> np.uint64(63)
         first[iy + 1] = n
 
@@ -439,15 +439,4 @@ def _next_common_bit(a: Words, b: Words, c: Words, begin: int) -> int:
 @helper
 def lowest_bit(bits: np.uint64) -> int:
     """Number of the lowest set bit: how many lie below it."""
-    return _n_bits((bits & (~bits + np.uint64(1))) - np.uint64(1))
-
-
-@helper
-def _n_bits(bits: np.uint64) -> int:
-    """Number of set bits, summed in pairs, nibbles and octets."""
-    bits -= bits >> np.uint64(1) & np.uint64(0x5555555555555555)
-    bits = (bits & np.uint64(0x3333333333333333)) + (
-        bits >> np.uint64(2) & np.uint64(0x3333333333333333)
-    )
-    bits = bits + (bits >> np.uint64(4)) & np.uint64(0x0F0F0F0F0F0F0F0F)
-    return int(bits * np.uint64(0x0101010101010101) >> np.uint64(56))
+    return n_bits((bits & (~bits + np.uint64(1))) - np.uint64(1))

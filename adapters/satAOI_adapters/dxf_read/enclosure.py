@@ -130,8 +130,11 @@ def enclosed(bounds: Sequence[BaseGeometry]) -> Region:
     Returns:
         The floor; empty where nothing is enclosed.
     """
-    edges = [bound.boundary if isinstance(bound, Polygon) else bound for bound in bounds]
-    walls = shapely.union_all(edges, grid_size=SAME_MM)
+    # Solids that overlap have one outline. Outlines of the same curve, divided in two ways, would
+    # cross each other at every chord.
+    filled = shapely.union_all([bound for bound in bounds if isinstance(bound, Polygon)])
+    lines = [bound for bound in bounds if not isinstance(bound, Polygon)]
+    walls = shapely.union_all([filled.boundary, *lines], grid_size=SAME_MM)
     if walls.is_empty:
         return MultiPolygon()
     samples = _samples(walls)
@@ -151,7 +154,6 @@ def enclosed(bounds: Sequence[BaseGeometry]) -> Region:
             found = shapely.union_all([found, *faces])
             # what lies within is settled
             walls = shapely.union_all([*_beyond(found, shapely.get_parts(walls)), found.boundary])
-    filled = shapely.union_all([bound for bound in bounds if isinstance(bound, Polygon)])
     return _with_rooms(found, filled)
 
 
