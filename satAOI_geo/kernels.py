@@ -20,7 +20,6 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cached_property, update_wrapper
 from importlib.util import cache_from_source
-from itertools import chain
 from threading import Lock
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, Final, Generic, ParamSpec, TypeVar
@@ -116,9 +115,8 @@ class Kernel(Generic[P, R]):
             TypeError: If an argument is not of its type.
         """
         run = self._run or self.ready()
-        takes = self._signature.takes
-        checked = [taken.checked(given) for taken, given in zip(takes, arguments, strict=True)]
-        result: R = run(*chain.from_iterable(map(Parameter.as_c, takes, checked)))
+        given = zip(self._signature.takes, arguments, strict=True)
+        result: R = run(*[value for taken, argument in given for value in taken.as_c(argument)])
         return result
 
     def ready(self) -> Function:

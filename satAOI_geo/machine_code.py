@@ -37,8 +37,8 @@ C_FUNCTIONS: Final = frozenset(
 )
 """Functions of C that code may call, or LLVM's operations of that name become."""
 
-_MEMORY: Final = ctypes.c_char * 0
-"""Where an array lies, whatever there is."""
+_place_of: Final[Callable[[Any], Any]] = (ctypes.c_char * 0).from_buffer
+"""Where an array lies that may be written to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,14 +55,16 @@ class Parameter:
     n_axes: int = 0
     is_const: bool = False
 
-    def checked(self, argument: Any) -> Any:  # noqa: ANN401  whatever was passed
-        """An argument as it can be passed on: an array that is only read may be a copy of it.
+    def as_c(self, argument: Any) -> tuple[Any, ...]:  # noqa: ANN401  whatever was passed
+        """What C is given for an argument: for an array where it lies, and its sizes.
+
+        Of an array that is only read this may be a copy, which lives as long as what is returned.
 
         Raises:
             TypeError: If it is not such an array; numbers are up to ctypes.
         """
         if not self.n_axes:
-            return argument.item() if isinstance(argument, np.generic) else argument
+            return (argument.item() if isinstance(argument, np.generic) else argument,)
         if not isinstance(argument, np.ndarray):
             raise TypeError(f"an array is expected, not {argument!r}")
         if argument.dtype != self.dtype or argument.ndim != self.n_axes:
@@ -71,21 +73,15 @@ class Parameter:
                 f"{argument.dtype} with {argument.ndim}"
             )
         flags = argument.flags
-        if flags.c_contiguous and flags.aligned and (flags.writeable or self.is_const):
-            return argument
-        if self.is_const:
-            # from another process an array may come at an odd address
-            return np.array(argument, order="C")
-        raise TypeError("the array is not in the order of C, or not to be written to")
-
-    def as_c(self, argument: Any) -> tuple[Any, ...]:  # noqa: ANN401  a number or an array
-        """What C is given for a checked argument: for an array its address and sizes."""
-        if not self.n_axes:
-            return (argument,)
-        # several times faster, which counts at thousands of calls, but for arrays to write to only
-        is_writeable = argument.flags.writeable
-        address = _MEMORY.from_buffer(argument) if is_writeable else argument.ctypes.data
-        return (address, *argument.shape)
+        if flags.carray:
+            # several times faster than its address, but for arrays to write to only
+            return (_place_of(argument), *argument.shape)
+        if not self.is_const:
+            raise TypeError("the array is not in the order of C, or not to be written to")
+        if flags.c_contiguous and flags.aligned:
+            return (argument.ctypes.data, *argument.shape)
+        # from another process an array may come at an odd address
+        return (_place_of(np.array(argument, order="C")), *argument.shape)
 
     def c_types(self) -> list[Any]:
         """The types for what `as_c` gives."""
