@@ -145,7 +145,8 @@ class Intervals:
         # no piece has more corners than all have together
         corners = np.empty((2, pieces.x.size + part_x.size + 1))
         flanks = np.empty((2, lattice.n_rows))
-        nearest = _nearest(rows, lattice.n_rows)
+        asked = np.ones(lattice.n_rows, dtype=np.bool_) if rows is None else rows
+        nearest = np.empty((2, lattice.n_rows), dtype=np.int64)
         return filled(
             lambda barred: _block(
                 words,
@@ -161,24 +162,13 @@ class Intervals:
                 pieces.radius,
                 corners,
                 flanks,
+                asked,
                 nearest,
                 watch,
                 barred,
             ),
             np.empty((BARRED, 3), dtype=np.int64),
         )
-
-
-def _nearest(rows: BoolArray | None, n_rows: int) -> IntArray:
-    """For each row the first one asked for from there on, and the last one up to there.
-
-    Shape (2, n_rows); the number of rows, or -1, where there is none. None asks for all rows.
-    """
-    number = np.arange(n_rows)
-    if rows is None:
-        return np.array((number, number))
-    ahead = np.minimum.accumulate(np.where(rows, number, n_rows)[::-1])[::-1]
-    return np.array((ahead, np.maximum.accumulate(np.where(rows, number, -1))))
 
 
 def _pieces(shape: Shape) -> list[FloatArray]:
@@ -205,7 +195,7 @@ def _from_lowest(corners: FloatArray) -> FloatArray:
 @kernel(
     "int64(uint64[:, :], int64, int64, const float64[:], const float64[:], float64, "
     "const float64[:], const float64[:], const int64[:], const float64[:], const float64[:], "
-    "float64[:, :], float64[:, :], const int64[:, :], bool, int64[:, :])"
+    "float64[:, :], float64[:, :], const bool[:], int64[:, :], bool, int64[:, :])"
 )
 def _block(
     words: Words,
@@ -221,6 +211,7 @@ def _block(
     radius: FloatArray,
     corners: FloatArray,
     flanks: FloatArray,
+    rows: BoolArray,
     nearest: IntArray,
     watch: bool,  # noqa: FBT001  kernels take no keywords
     barred: IntArray,
@@ -244,7 +235,8 @@ def _block(
         radius: The same.
         corners: Room for x and y of the corners of a sum, the first one twice.
         flanks: Room for its left and right end in each row.
-        nearest: Which rows are asked for, see `_nearest`; all where steps are looked for.
+        rows: Which rows are asked for; all where steps are looked for.
+        nearest: Room for two numbers a row, see `_find_nearest`.
         watch: Whether to look for steps that a piece bars between their ends.
         barred: Room for such steps, three numbers each, see `Engine.block`.
 
@@ -255,6 +247,7 @@ def _block(
     sum_x, sum_y = corners[0], corners[1]
     left, right = flanks[0], flanks[1]
     n_barred = 0
+    _find_nearest(rows, nearest)
     part_top = part_y[_extremes(part_y)[1]]
     for piece in range(radius.size):
         begin, end = first[piece], first[piece + 1]
@@ -295,6 +288,24 @@ def _block(
                 n_columns,
             )
     return n_barred
+
+
+@helper
+def _find_nearest(rows: BoolArray, nearest: IntArray) -> None:
+    """Write for each row the first one asked for from there on, and the last one up to there.
+
+    The number of rows, or -1, where there is none.
+    """
+    last = -1
+    for iy in range(rows.size):
+        if rows[iy]:
+            last = iy
+        nearest[1, iy] = last
+    first = rows.size
+    for iy in range(rows.size - 1, -1, -1):
+        if rows[iy]:
+            first = iy
+        nearest[0, iy] = first
 
 
 @helper
