@@ -26,8 +26,12 @@ def test_a_run_on_a_small_plan_ends_before_circular_garbage_was_looked_for(tmp_p
         "looks = []; gc.callbacks.append(lambda *look: looks.append(look)); "
         f"assert not main([{str(plan)!r}, '-o', {str(output)!r}, '-q']); print(len(looks))"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    # a first run may compile, which makes garbage
+    _, done = (
+        subprocess.run(
+            [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+        )
+        for _ in range(2)
     )
     assert done.stdout.split() == ["0"]
 
