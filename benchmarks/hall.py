@@ -71,7 +71,7 @@ def stages(drawing: Path, folder: Path) -> dict[str, Job]:
         "pose-connected sets": lambda: PoseComponents.of(lattice, [Band.of(engine, robot, space)]),
         "area": lambda: area(free, lattice, robot.disc_radius_mm),
         "zones": lambda: zones(found.pose, lattice, robot.disc_radius_mm, {}),
-        "set-downs": lambda: set_downs(found.pose, found.free, lattice, robot.disc_radius_mm),
+        "set-downs": lambda: set_downs(found.pose, found.free, lattice, robot.disc_radius_mm, {}),
         "reasons": lambda: unreached(found, result.aoi, result.upper),
         "write the drawing": lambda: write_aoi(folder / "stage.dxf", result),
     }

@@ -11,7 +11,7 @@ import pytest
 import scipy.ndimage
 from shapely.geometry import LineString, box
 
-from benchmarks import compare
+from benchmarks import compare, hall
 from benchmarks.cells import occupied_cells
 from benchmarks.contender import CONTENDERS
 from benchmarks.fft_raster import (
@@ -32,6 +32,7 @@ from satAOI_geo.lattice import Lattice
 from satAOI_geo.plan import BoolArray, Circle, FloorPlan, Kind, Obstacle
 from satAOI_geo.robot import PROTOTYPE
 from tests import plans
+from tests.command_line import drawn_room
 
 ROOT = Path(__file__).parents[1]
 STEP_MM = 50.0
@@ -172,3 +173,9 @@ def test_times_are_told_in_hours_and_seconds() -> None:
     assert compare.time_in_words(0.256, 0.0) == "0.26 s"
     assert compare.time_in_words(1575.4, 218.6) == "1575 ± 219 s"
     assert compare.time_in_words(9 * 3600.0, 1800.0) == "9.00 ± 0.50 h"
+
+
+def test_every_stage_that_is_timed_runs(tmp_path: Path) -> None:
+    for job in hall.stages(drawn_room(tmp_path / "room.dxf"), tmp_path).values():
+        job()
+    assert (tmp_path / "stage.dxf").exists()
