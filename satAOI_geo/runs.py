@@ -408,16 +408,7 @@ def _paint(words: Words, row: Int32Array, begin: Int32Array, end: Int32Array) ->
 @helper
 def _next_bit(row: Words, begin: int) -> int:
     """The first set bit of a row of words from `begin` on, or -1."""
-    word = begin >> 6
-    if word >= row.size:
-        return -1
-    bits = row[word] >> np.uint64(begin & 63) << np.uint64(begin & 63)
-    while not bits:
-        word += 1
-        if word == row.size:
-            return -1
-        bits = row[word]
-    return word * 64 + lowest_bit(bits)
+    return _next_common_bit(row, row, row, begin)
 
 
 @helper

@@ -7,7 +7,7 @@ sweep, so that an allowed move really touches nothing. At δ = 15° the push is 
 radius. What the hull adds lies on the side towards o, where the true sweep is hollow: up to 60 mm
 with the prototype's vehicle.
 
-Parts of as many corners and of one radius are swept together, a thousand as fast as ten.
+Parts of as many corners and of one radius are swept together: each call of shapely takes its time.
 """
 
 import math

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import ezdxf
 from ezdxf.document import Drawing
-from ezdxf.layouts import Modelspace
+from ezdxf.layouts import BaseLayout, Modelspace
 
 from satAOI_adapters.dxf_read import ReadOptions, read
 from satAOI_geo.plan import FloorPlan, Obstacle
@@ -24,7 +24,7 @@ def drawing(*, unit: int = MM, floor: bool = True) -> Drawing:
     return document
 
 
-def rectangle(space: Modelspace, x0: float, y0: float, x1: float, y1: float, *, layer: str) -> None:
+def rectangle(space: BaseLayout, x0: float, y0: float, x1: float, y1: float, *, layer: str) -> None:
     """A closed polyline along the axes."""
     corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
     space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer})

@@ -34,7 +34,8 @@ def test_dashed_line_among_walls_is_left_out_and_said(
     assert standing(plan, "S-WALL-UP") == []
     assert len(standing(plan, "WALL")) == 3
     (said,) = [finding for finding in plan.findings if finding.code == "dashed"]
-    assert said.layer == "S-WALL-UP"
+    assert (said.layer, said.at_mm) == ("S-WALL-UP", (0.0, 6000.0))
+    assert said.handle
 
 
 def test_layer_0_of_a_block_is_as_dashed_as_the_layer_it_is_seen_on(tmp_path: Path) -> None:

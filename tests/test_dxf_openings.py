@@ -17,7 +17,7 @@ from tests.drawings import codes, drawing, plan_of, rectangle, standing
 
 WALL = box(0, 5000, 10_000, 5200)
 OPENING = box(4000, 5000, 4900, 5200)
-ON_WALL, ON_DOOR = {"layer": "WALL"}, {"layer": "A-DOOR"}
+ON_WALL = {"layer": "WALL"}
 
 
 def outline(space: Modelspace) -> None:
@@ -95,11 +95,26 @@ def test_door_that_slides_opens_the_wall_under_its_mask(tmp_path: Path) -> None:
     assert in_drawing(plan).equals(WALL.difference(box(4000, 5000, 5000, 5200)))
 
 
+@pytest.mark.parametrize("width_mm", [300, 5000])
+def test_mask_on_a_door_layer_that_no_door_is_as_wide_as_opens_nothing_and_is_said(
+    width_mm: int, tmp_path: Path
+) -> None:
+    document = drawing()
+    outline(document.modelspace())
+    right = 4000 + width_mm
+    corners = [(4000, 4950), (right, 4950), (right, 5250), (4000, 5250)]
+    # ezdxf puts it on layer 0 whatever it is told
+    document.modelspace().add_wipeout(corners).dxf.layer = "A-DOOR"
+    plan = plan_of(document, tmp_path)
+    assert in_drawing(plan).equals(WALL)
+    assert "door-in-wall" in codes(plan)
+
+
 def test_mask_of_anything_but_a_door_opens_nothing(tmp_path: Path) -> None:
     document = drawing()
     outline(document.modelspace())
     corners = [(4000, 4950), (5000, 4950), (5000, 5250), (4000, 5250)]
-    document.modelspace().add_wipeout(corners, dxfattribs=ON_WALL)
+    document.modelspace().add_wipeout(corners).dxf.layer = "WALL"
     assert in_drawing(plan_of(document, tmp_path)).equals(WALL)
 
 

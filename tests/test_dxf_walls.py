@@ -618,7 +618,7 @@ def test_leaf_on_a_nameless_layer_is_no_obstacle(tmp_path: Path) -> None:
 
 def test_block_named_as_a_stair_says_nothing_about_the_lines_around_it(tmp_path: Path) -> None:
     document = house(opening_mm=900.0, layer="0")
-    rectangle(document.blocks.new("Stair 1"), 1000, 1000, 2000, 3000, layer="0")  # type: ignore[arg-type]
+    rectangle(document.blocks.new("Stair 1"), 1000, 1000, 2000, 3000, layer="0")
     document.modelspace().add_blockref("Stair 1", (0, 0))
     plan = plan_of(document, tmp_path)
     assert plan.floor.area == OUTSIDE.area

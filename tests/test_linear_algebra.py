@@ -10,7 +10,7 @@ from satAOI_adapters.linear_algebra import VARIABLE, without_threads
 from tests.command_line import ROOT
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="the threads of Linux")
+@pytest.mark.skipif(sys.platform != "linux", reason="threads are counted in /proc, which Linux has")
 def test_where_the_command_line_loads_numpy_it_has_the_threads_of_python_and_no_more() -> None:
     code = (
         "import os, sys, threading; sys.path[:0] = ['.', 'adapters']; "

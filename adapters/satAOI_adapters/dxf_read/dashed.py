@@ -4,7 +4,7 @@ Lintels over doors, beams, edges of the storey above, foundations and centre lin
 nothing to run into, and taken as walls they would close every door that has a lintel.
 """
 
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Sequence
 from typing import Final
 
@@ -15,7 +15,7 @@ from satAOI_adapters.dxf_read.expand import BY_PARENT, Placed
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.meaning import Seen
 from satAOI_adapters.layers import Certainty, Meaning
-from satAOI_geo.plan import Finding
+from satAOI_geo.plan import Finding, Frame
 
 BY_LAYER: Final = "BYLAYER"
 """Linetype of an entity that is drawn as its layer says."""
@@ -40,22 +40,23 @@ def dashed_walls(seen: Sequence[Seen]) -> frozenset[int]:
 
 
 def without_dashed(
-    walls: Sequence[Feature], dashed: frozenset[int]
+    walls: Sequence[Feature], dashed: frozenset[int], frame: Frame
 ) -> tuple[list[Feature], tuple[Finding, ...]]:
     """Walls less the lines that are dashed, and what is to be said about these.
 
     Args:
         walls: What is drawn on wall layers; fills and wide lines stay.
         dashed: Identities of what is placed and dashed.
+        frame: Of the walls.
     """
     kept: list[Feature] = []
-    left_out: Counter[str] = Counter()
+    left_out: defaultdict[str, list[Feature]] = defaultdict(list)
     for feature in walls:
         if id(feature.placed) in dashed and not feature.is_area and not feature.width_mm:
-            left_out[feature.placed.layer] += 1
+            left_out[feature.placed.layer].append(feature)
         else:
             kept.append(feature)
-    return kept, tuple(_finding(layer, count) for layer, count in sorted(left_out.items()))
+    return kept, tuple(_finding(left_out[layer], frame) for layer in sorted(left_out))
 
 
 def _is_dashed(placed: Placed) -> bool:
@@ -83,11 +84,16 @@ def _has_gaps(linetype: Linetype) -> bool:
     )
 
 
-def _finding(layer: str, count: int) -> Finding:
+def _finding(lines: Sequence[Feature], frame: Frame) -> Finding:
+    """What is to be said about dashed lines of one layer."""
+    first = lines[0]
+    x_mm, y_mm = frame.to_drawing_mm([first.paths[0].start])[0]
     return Finding(
         "dashed",
-        f"{count} lines on layer '{layer}' are dashed, as things above the cut or under the floor "
-        "are drawn: they are left out",
+        f"{len(lines)} lines on layer '{first.placed.layer}' are dashed, as things above the cut "
+        "or under the floor are drawn: they are left out",
         "draw them continuous, or name the layer in a file for --layers, if they stop the robot",
-        layer=layer,
+        layer=first.placed.layer,
+        handle=first.placed.handle,
+        at_mm=(float(x_mm), float(y_mm)),
     )

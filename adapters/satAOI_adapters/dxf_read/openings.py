@@ -26,7 +26,7 @@ from satAOI_adapters.dxf_read.linework import WALL_MM
 from satAOI_adapters.dxf_read.obstacles import Standing
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.shapes import rounded
-from satAOI_adapters.dxf_read.swings import LEAF_SLACK_MM, Swing
+from satAOI_adapters.dxf_read.swings import LEAF_MM, LEAF_SLACK_MM, LEAST_LEAF_MM, Swing
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_geo.plan import Circle, Finding, Obstacle, Shape, polygons_in
 
@@ -51,6 +51,11 @@ class Span:
     def width_mm(self) -> float:
         """How wide the door is."""
         return math.dist(self.start, self.end)
+
+    @property
+    def is_door_wide(self) -> bool:
+        """Whether a door of one leaf or two is as wide; masks of tags and of much else are not."""
+        return LEAST_LEAF_MM <= self.width_mm <= 2 * LEAF_MM
 
     @property
     def line(self) -> LineString:
@@ -131,7 +136,11 @@ def with_openings(
     findings: list[Finding] = []
     for spans in (*map(shut, doors), *map(_middles, _alone(masks, doors))):
         crossings = [_crossing(span, tree) for span in spans]
-        over = [(c.span, depth) for c in crossings if (depth := c.depth) is not None]
+        over = [
+            (crossing.span, depth)
+            for crossing in crossings
+            if crossing.span.is_door_wide and (depth := crossing.depth) is not None
+        ]
         if any(_is_free(crossing, tree) for crossing in crossings):
             continue
         if len(over) == 1:

@@ -175,7 +175,7 @@ def _walls(
     """The walls: what is drawn on their layers and on those of doors, open where doors are."""
     doors_on_walls = swings(on_walls)
     drawn_as_walls, _ = parted(on_walls, doors_on_walls)
-    drawn_as_walls, of_dashes = without_dashed(drawn_as_walls, drawing.dashed)
+    drawn_as_walls, of_dashes = without_dashed(drawn_as_walls, drawing.dashed, terms.frame)
     faces = _lines(drawn_as_walls)
     on_door_layers = partitions(drawn[Meaning.DOOR], faces, drawing.door_blocks)
     glazed = windows(drawn[Meaning.DOOR], faces, drawing.door_blocks)
