@@ -28,8 +28,8 @@ LEAF_MM: Final = 1300.0
 LEAST_LEAF_MM: Final = 400.0
 """No leaf of a door that people go through is shorter."""
 
-LEAF_SLACK_MM: Final = 60.0
-"""A leaf may start and end this far from its arc's centre and its arc: it has a thickness."""
+LEAF_SLACK_MM: Final = 75.0
+"""A leaf may start and end this far from its arc's centre and its arc, as it has a thickness."""
 
 TIP_SLACK_MM: Final = 100.0
 """An arc drawn by hand begins this close to the tip of its leaf."""
