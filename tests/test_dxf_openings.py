@@ -118,6 +118,47 @@ def test_mask_of_anything_but_a_door_opens_nothing(tmp_path: Path) -> None:
     assert in_drawing(plan_of(document, tmp_path)).equals(WALL)
 
 
+def test_outline_of_a_door_from_face_to_face_of_a_wall_is_its_opening(tmp_path: Path) -> None:
+    document = drawing()
+    outline(document.modelspace())
+    rectangle(document.modelspace(), *OPENING.bounds, layer="DRZWI_H210cm")
+    plan = plan_of(document, tmp_path)
+    assert in_drawing(plan).equals(WALL.difference(OPENING))
+    assert codes(plan).count("door-over-wall") == 1
+
+
+def test_outline_with_glass_on_the_layer_of_openings_is_a_window_and_stays_closed(
+    tmp_path: Path,
+) -> None:
+    document = drawing()
+    outline(document.modelspace())
+    rectangle(document.modelspace(), *OPENING.bounds, layer="OPENINGS")
+    document.modelspace().add_line((4000, 5100), (4900, 5100), dxfattribs={"layer": "OPENINGS"})
+    assert in_drawing(plan_of(document, tmp_path)).equals(WALL)
+
+
+def test_leaf_that_slides_in_a_wall_drawn_whole_leaves_it_closed_and_is_said(
+    tmp_path: Path,
+) -> None:
+    document = drawing()
+    outline(document.modelspace())
+    rectangle(document.modelspace(), 4000, 5080, 4900, 5120, layer="A-DOOR")
+    plan = plan_of(document, tmp_path)
+    assert in_drawing(plan).equals(WALL)
+    (said,) = [finding for finding in plan.findings if finding.code == "door-in-wall"]
+    assert said.at_mm == (4000.0, 5100.0)
+
+
+def test_leaf_that_slides_before_the_wall_beside_its_opening_needs_no_word(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 0, 5000, 4000, 5200, layer="WALL")
+    rectangle(document.modelspace(), 4900, 5000, 10_000, 5200, layer="WALL")
+    rectangle(document.modelspace(), 4910, 5210, 5810, 5250, layer="A-DOOR")
+    plan = plan_of(document, tmp_path)
+    assert in_drawing(plan).equals(WALL.difference(OPENING))
+    assert not {"door-over-wall", "door-in-wall"} & set(codes(plan))
+
+
 @pytest.mark.parametrize("turn_deg", [37.0, 180.0])
 @pytest.mark.parametrize("x_scale", [1.0, -1.0])
 def test_turned_and_mirrored_the_same_opening_is_cut(

@@ -2,7 +2,9 @@
 
 Many offices lay the symbol of a door over a wall whose lines go on under it, with a mask (WIPEOUT)
 or without. The swing tells the opening: it reaches from the hinge to where the tip of the leaf is
-when the door is shut. A door without a swing tells it by its mask.
+when the door is shut. A door without a swing tells it by its mask, or by an outline from one face
+of the wall to the other. Where one with none of these leads through, a sliding door, nobody can
+tell; that much is said.
 
       ┌╮ leaf and swing
       │ ╲
@@ -11,6 +13,7 @@ when the door is shut. A door without a swing tells it by its mask.
 """
 
 import math
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final, TypeAlias
@@ -22,10 +25,12 @@ from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.doors import ABREAST_MM
+from satAOI_adapters.dxf_read.features import Feature
+from satAOI_adapters.dxf_read.groups import linked
 from satAOI_adapters.dxf_read.linework import WALL_MM
 from satAOI_adapters.dxf_read.obstacles import Standing
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
-from satAOI_adapters.dxf_read.shapes import rounded
+from satAOI_adapters.dxf_read.shapes import middle_line, rounded
 from satAOI_adapters.dxf_read.swings import LEAF_MM, LEAF_SLACK_MM, LEAST_LEAF_MM, Swing
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_geo.plan import Circle, Finding, Obstacle, Shape, polygons_in
@@ -120,8 +125,46 @@ class Crossing:
         return (min(right), max(left)) if is_even and is_wall else None
 
 
+@dataclass(frozen=True, slots=True)
+class Still:
+    """Doors that neither swing nor have a mask.
+
+    Attributes:
+        outlines: Closed outlines; one from face to face of a wall is the opening itself.
+        symbols: Rectangles around all that is drawn close together.
+    """
+
+    outlines: tuple[Polygon, ...] = ()
+    symbols: tuple[Polygon, ...] = ()
+
+    @classmethod
+    def of(cls, drawn: Sequence[Feature]) -> "Still":
+        """What features on door layers show, their swings aside."""
+        paths = [path for feature in drawn for path in feature.paths]
+        lines = [middle_line(path) for path in paths]
+        if not lines:
+            return cls()
+        near = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=LEAF_SLACK_MM)
+        together = defaultdict(list)
+        for line, group in zip(lines, linked(near.T, len(lines)).tolist(), strict=True):
+            together[group].append(line)
+        closed = [line for path, line in zip(paths, lines, strict=True) if path.closed]
+        return cls(
+            _rectangles(closed),
+            _rectangles([shapely.union_all(each) for each in together.values()]),
+        )
+
+    def apart_from(self, doors: Sequence[Swing]) -> "Still":
+        """Those of them that are no part of a door that swings."""
+        return Still(_alone(self.outlines, doors), _alone(self.symbols, doors))
+
+
 def with_openings(
-    walls: Standing, doors: Sequence[Swing], masks: Sequence[Polygon], terms: Terms
+    walls: Standing,
+    doors: Sequence[Swing],
+    masks: Sequence[Polygon],
+    still: Still,
+    terms: Terms,
 ) -> Standing:
     """Walls with the openings that doors drawn over them show.
 
@@ -129,6 +172,7 @@ def with_openings(
         walls: As they are drawn.
         doors: With a swing.
         masks: Of doors; they count where no door swings.
+        still: Doors without either.
         terms: The terms of the reading.
     """
     tree = shapely.STRtree([wall.region() for wall in walls.obstacles])
@@ -136,11 +180,7 @@ def with_openings(
     findings: list[Finding] = []
     for spans in (*map(shut, doors), *map(_middles, _alone(masks, doors))):
         crossings = [_crossing(span, tree) for span in spans]
-        over = [
-            (crossing.span, depth)
-            for crossing in crossings
-            if crossing.span.is_door_wide and (depth := crossing.depth) is not None
-        ]
+        over = _over(crossings)
         if any(_is_free(crossing, tree) for crossing in crossings):
             continue
         if len(over) == 1:
@@ -149,6 +189,17 @@ def with_openings(
             findings.append(_opened(span, terms))
         elif any(crossing.depths for crossing in crossings):
             findings.append(_left_closed(spans[0], terms))
+    still = still.apart_from(doors)
+    for outline in still.outlines:
+        for span, depth in _over(_crossings(outline, tree)):
+            if outline.buffer(ABREAST_MM).contains(span.opening(depth)):
+                openings.append(span.opening(depth))
+                findings.append(_opened(span, terms))
+    for symbol in still.symbols:
+        crossings = _crossings(symbol, tree)
+        is_shut = not any(_is_free(crossing, tree) for crossing in crossings)
+        if is_shut and not any(map(symbol.intersects, openings)):
+            findings.extend(_left_closed(span, terms) for span, _ in _over(crossings))
     return Standing(_cut(walls.obstacles, openings), (*walls.findings, *findings))
 
 
@@ -157,14 +208,34 @@ def shut(door: Swing) -> list[Span]:
     return [Span(door.hinge, tip) for tip in door.shut_at]
 
 
-def _alone(masks: Sequence[Polygon], doors: Sequence[Swing]) -> list[Polygon]:
-    """The masks at which no door swings."""
+def _alone(places: Sequence[Polygon], doors: Sequence[Swing]) -> tuple[Polygon, ...]:
+    """The places at which no door swings."""
     hinges = shapely.STRtree([Spot(door.hinge) for door in doors])
+    return tuple(
+        place
+        for place in places
+        if not hinges.query(place, predicate="dwithin", distance=LEAF_SLACK_MM).size
+    )
+
+
+def _rectangles(shapes: Sequence[BaseGeometry]) -> tuple[Polygon, ...]:
+    """The rectangles around some shapes; none where a shape is straight."""
+    around = [shape.minimum_rotated_rectangle for shape in shapes]
+    return tuple(rectangle for rectangle in around if isinstance(rectangle, Polygon))
+
+
+def _over(crossings: Sequence[Crossing]) -> list[tuple[Span, Depth]]:
+    """Where a door may be that lies over one wall, and how deep that is."""
     return [
-        mask
-        for mask in masks
-        if not hinges.query(mask, predicate="dwithin", distance=LEAF_SLACK_MM).size
+        (crossing.span, depth)
+        for crossing in crossings
+        if crossing.span.is_door_wide and (depth := crossing.depth) is not None
     ]
+
+
+def _crossings(rectangle: Polygon, tree: shapely.STRtree) -> list[Crossing]:
+    """What walls do where a door is drawn that does not swing."""
+    return [_crossing(span, tree) for span in _middles(rectangle)]
 
 
 def _middles(mask: Polygon) -> list[Span]:

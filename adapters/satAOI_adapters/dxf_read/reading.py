@@ -25,7 +25,7 @@ from satAOI_adapters.dxf_read.doors import (
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.floor import floor_of
 from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
-from satAOI_adapters.dxf_read.openings import shut, with_openings
+from satAOI_adapters.dxf_read.openings import Still, shut, with_openings
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
 from satAOI_adapters.dxf_read.plans import Drawn, chosen, clusters, within
@@ -180,10 +180,14 @@ def _walls(
     on_door_layers = partitions(drawn[Meaning.DOOR], faces, drawing.door_blocks)
     glazed = windows(drawn[Meaning.DOOR], faces, drawing.door_blocks)
     edges = _lines(drawn[Meaning.FLOOR], only_closed=True)
-    doors = [*doors_on_walls, *swings(drawn[Meaning.DOOR])]
+    doors_on_layers = swings(drawn[Meaning.DOOR])
+    doors = [*doors_on_walls, *doors_on_layers]
     of_doors = [*_lines(drawn[Meaning.DOOR]), *(span.line for door in doors for span in shut(door))]
     whole = walls([*drawn_as_walls, *on_door_layers, *glazed], columns, edges, of_doors, terms)
-    standing = with_openings(whole, doors, drawing.masks_of_doors(terms.frame), terms)
+    rest, _ = parted(drawn[Meaning.DOOR], doors_on_layers)
+    walls_too = {id(feature.placed) for feature in (*on_door_layers, *glazed)}
+    still = Still.of([feature for feature in rest if id(feature.placed) not in walls_too])
+    standing = with_openings(whole, doors, drawing.masks_of_doors(terms.frame), still, terms)
     return Standing(
         standing.obstacles,
         (
