@@ -92,12 +92,67 @@ from satAOI_geo.errors import InputError
         ("A-WALL-HEAD", Meaning.IGNORE),
         ("A-WALL-ABOV", Meaning.IGNORE),
         ("Stürze", Meaning.IGNORE),
+        ("Rolltor", Meaning.DOOR),
+        ("Ворота", Meaning.DOOR),
+        ("Portões", Meaning.DOOR),
+        ("Entwässerungsrinne", Meaning.HOLE),
+        ("FOSSES", Meaning.HOLE),
+        ("Çukur", Meaning.HOLE),
+        ("吊装孔", Meaning.HOLE),
+        ("S-OPNG", Meaning.HOLE),
+        ("Gevel", Meaning.WALL),
+        ("TAMPONAMENTI", Meaning.WALL),
+        ("FLOOR JOINTS", Meaning.IGNORE),
+        ("伸缩缝", Meaning.IGNORE),
+        ("独立基础", Meaning.IGNORE),
+        ("设备基础", Meaning.EQUIPMENT),
+        ("Gefälle", Meaning.IGNORE),
+        ("Estanterías", Meaning.IGNORE),
         ("DWELLING", None),
         ("0", None),
     ],
 )
 def test_office_names_are_understood(name: str, meaning: Meaning | None) -> None:
     assert layer_table().of_layer(name).meaning is meaning
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "FLOOR_MARKING",
+        "FLOOR DRAINS",
+        "A-FLOR-DRAN",
+        "Floor Boxes",
+        "Floor-Below",
+        "SLAB_EDGE_BELOW",
+        "Slab Joints",
+        "FLOOR PLAN",
+        "FLOOR LEVEL",
+        "BODENPLATTE_FUGEN",
+        "BODENPLATTE-BEWEHRUNG",
+        "FUNDAMENTE_UNTER_BODENPLATTE",
+        "Boden_Markierung",
+        "PAVIMENTO_GIUNTI",
+        "LOSA JUNTAS",
+        "Posadzka_dylatacje",
+        "VLOER_DILATATIE",
+        "ZEMIN DERZ",
+        "ПОЛ_УКЛОН",
+        "Полы трапы",
+        "地面标线",
+        "地坪缝",
+        "地面分格",
+    ],
+)
+def test_what_is_drawn_on_a_floor_or_in_it_is_not_the_floor(name: str) -> None:
+    assert layer_table().of_layer(name).meaning is not Meaning.FLOOR
+
+
+@pytest.mark.parametrize(
+    "name", ["LEVEL 1 FLOOR", "Slab Outline", "S-SLAB-EDGE", "BODENPLATTE", "车间地面", "楼板边线"]
+)
+def test_the_floor_of_a_storey_and_its_edge_are_the_floor(name: str) -> None:
+    assert layer_table().of_layer(name).meaning is Meaning.FLOOR
 
 
 @pytest.mark.parametrize(
@@ -110,6 +165,9 @@ def test_office_names_are_understood(name: str, meaning: Meaning | None) -> None
         ("DESK-01", Meaning.IGNORE),
         ("Stuhl 3", Meaning.IGNORE),
         ("马桶01", Meaning.IGNORE),
+        ("M_Chair-Executive", Meaning.IGNORE),
+        ("Pocket_Slider", Meaning.DOOR),
+        ("Lift-Car", Meaning.EQUIPMENT),
         ("COL16", Meaning.COLUMN),
         ("*U12", None),
         ("A$C3F1", None),
