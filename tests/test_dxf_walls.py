@@ -261,6 +261,50 @@ def test_threshold_of_two_lines_is_no_window(tmp_path: Path) -> None:
     assert standing(plan, "A-DOOR") == []
 
 
+@pytest.mark.parametrize("thresholds_mm", [(), (5000,), (5000, 5200)])
+def test_leaf_of_a_door_that_is_shut_is_no_glass(
+    thresholds_mm: tuple[float, ...], tmp_path: Path
+) -> None:
+    document = with_opening(*thresholds_mm)
+    rectangle(document.modelspace(), 4000, 5080, 5200, 5120, layer="A-DOOR")
+    plan = plan_of(document, tmp_path)
+    assert standing(plan, "A-DOOR") == []
+    assert "window-on-door-layer" not in codes(plan)
+
+
+def test_frame_with_glass_in_it_between_two_faces_is_a_window_and_its_place_is_said(
+    tmp_path: Path,
+) -> None:
+    document = with_opening(5000, 5100, 5200)
+    rectangle(document.modelspace(), 4000, 5070, 5200, 5130, layer="A-DOOR")
+    plan = plan_of(document, tmp_path)
+    assert plan.obstacle_region().covers(box(4000, 5000, 5200, 5200))
+    (said,) = [finding for finding in plan.findings if finding.code == "window-on-door-layer"]
+    assert "1 times" in said.message
+    assert said.at_mm in {(4000.0, 5000.0), (4000.0, 5070.0)}
+    assert said.handle
+
+
+def test_dashed_lines_on_the_door_layer_are_no_glass(tmp_path: Path) -> None:
+    document = with_opening(5000, 5200)
+    document.linetypes.add("DASHED", [18.0, 12.0, -6.0])
+    document.modelspace().add_line(
+        (4000, 5100), (5200, 5100), dxfattribs={"layer": "A-DOOR", "linetype": "DASHED"}
+    )
+    assert standing(plan_of(document, tmp_path), "A-DOOR") == []
+
+
+def test_where_windows_have_a_layer_what_is_drawn_alike_on_that_of_doors_is_a_door_and_said(
+    tmp_path: Path,
+) -> None:
+    document = with_opening(5000, 5080, 5120, 5200)
+    document.modelspace().add_line((7000, 5300), (8000, 5300), dxfattribs={"layer": "A-GLAZ"})
+    plan = plan_of(document, tmp_path)
+    assert standing(plan, "A-DOOR") == []
+    (said,) = [finding for finding in plan.findings if finding.code == "window-on-door-layer"]
+    assert "taken as a door" in said.message
+
+
 def test_opening_with_a_swing_is_no_window(tmp_path: Path) -> None:
     document = with_opening(5000, 5100, 5200)
     on = {"layer": "A-DOOR"}

@@ -34,7 +34,7 @@ def dashed_walls(seen: Sequence[Seen]) -> frozenset[int]:
     dashed = [
         id(entity.placed)
         for entity in walls
-        if entity.verdict.certainty is not Certainty.GIVEN and _is_dashed(entity.placed)
+        if entity.verdict.certainty is not Certainty.GIVEN and is_dashed(entity.placed)
     ]
     return frozenset() if 2 * len(dashed) > len(walls) else frozenset(dashed)
 
@@ -59,7 +59,7 @@ def without_dashed(
     return kept, tuple(_finding(left_out[layer], frame) for layer in sorted(left_out))
 
 
-def _is_dashed(placed: Placed) -> bool:
+def is_dashed(placed: Placed) -> bool:
     """Whether an entity is drawn with gaps, by its own linetype or by that of its layer."""
     document = placed.entity.doc
     if document is None:

@@ -1,5 +1,6 @@
 """From a drawing to a floor plan: survey, obstacles, floor, frame."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -133,13 +134,15 @@ def _region_mm(options: ReadOptions, frame: Frame) -> tuple[float, float, float,
     return float(left), float(bottom), float(right), float(top)
 
 
-def _left_out(count: int, what: str) -> tuple[Finding, ...]:
-    if not count:
+def _left_out(counts: Counter[Meaning | None], what: str) -> tuple[Finding, ...]:
+    if not counts.total():
         return ()
+    of_kinds = ", ".join(f"{counts[meaning]} {meaning}" for meaning in KINDS if counts[meaning])
     return (
         Finding(
             "left-out",
-            f"{count} entities outside {what} are left out",
+            f"{counts.total()} entities outside {what} are left out"
+            + (f", of obstacles {of_kinds}" if of_kinds else ""),
             "choose another part with --plan N or --region if they belong to the floor",
         ),
     )
@@ -179,13 +182,16 @@ def _walls(
     faces = _lines(drawn_as_walls)
     on_door_layers = partitions(drawn[Meaning.DOOR], faces, drawing.door_blocks)
     glazed = windows(drawn[Meaning.DOOR], faces, drawing.door_blocks)
+    # a drawing with layers for windows has none on those of its doors
+    are_doors = bool(drawn[Meaning.WINDOW])
+    panes = [] if are_doors else [pane for window in glazed for pane in window]
     edges = _lines(drawn[Meaning.FLOOR], only_closed=True)
     doors_on_layers = swings(drawn[Meaning.DOOR])
     doors = [*doors_on_walls, *doors_on_layers]
     of_doors = [*_lines(drawn[Meaning.DOOR]), *(span.line for door in doors for span in shut(door))]
-    whole = walls([*drawn_as_walls, *on_door_layers, *glazed], columns, edges, of_doors, terms)
+    whole = walls([*drawn_as_walls, *on_door_layers, *panes], columns, edges, of_doors, terms)
     rest, _ = parted(drawn[Meaning.DOOR], doors_on_layers)
-    walls_too = {id(feature.placed) for feature in (*on_door_layers, *glazed)}
+    walls_too = {id(feature.placed) for feature in (*on_door_layers, *panes)}
     still = Still.of([feature for feature in rest if id(feature.placed) not in walls_too])
     standing = with_openings(whole, doors, drawing.masks_of_doors(terms.frame), still, terms)
     return Standing(
@@ -193,7 +199,7 @@ def _walls(
         (
             *standing.findings,
             *partition_findings(on_door_layers),
-            *window_findings(glazed),
+            *window_findings(glazed, terms, are_doors=are_doors),
             *_doors_among_walls(len(doors_on_walls)),
             *of_dashes,
         ),

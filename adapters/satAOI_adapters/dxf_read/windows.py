@@ -1,15 +1,18 @@
 """Windows on the layers of doors and openings: a sill is in the way of the robot, a door is not.
 
-A door leaves its opening free and shows at most a threshold, one line on either face of the wall.
-A window fills its opening: the faces of the wall go on across it, and between them runs the glass.
+A door leaves its opening free and shows at most a threshold, one line on either face of the wall,
+and its leaf. A window fills its opening: the faces of the wall go on across it, and between them
+runs the glass.
 
-      │       │
-    ──┤───────├──   face
-      │───────│     glass
-    ──┤───────├──   face
+      │       │              │       │
+    ──┤───────├──   face   ──┤───────├──   threshold
+      │───────│     glass    │▭▭▭▭▭▭▭│     leaf
+    ──┤───────├──   face   ──┤───────├──   threshold
 """
 
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -17,7 +20,8 @@ import shapely
 from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
-from satAOI_adapters.dxf_read.curves import Arc
+from satAOI_adapters.dxf_read.curves import Arc, Path
+from satAOI_adapters.dxf_read.dashed import is_dashed
 from satAOI_adapters.dxf_read.doors import (
     FACES_MM,
     abreast,
@@ -28,7 +32,9 @@ from satAOI_adapters.dxf_read.doors import (
 )
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.groups import linked
+from satAOI_adapters.dxf_read.shapes import by_chords, is_wide, middle_line
 from satAOI_adapters.dxf_read.swings import LEAF_SLACK_MM, may_be_swing
+from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_geo.plan import BoolArray, Finding, IntArray
 
 APART_MM: Final = 5.0
@@ -40,17 +46,19 @@ LINES: Final = 3
 
 def windows(
     doors: Sequence[Feature], walls: Sequence[BaseGeometry], door_blocks: frozenset[str]
-) -> list[Feature]:
-    """The lines of windows on door layers.
+) -> list[list[Feature]]:
+    """The windows on door layers, each by its lines.
 
     Three or more stand abreast, each from wall to wall, and no door swings from where they end.
+    Dashed lines and the outlines of leaves do not count.
 
     Args:
         doors: What is drawn on door layers.
         walls: Walls that are known already.
         door_blocks: Names of blocks that are doors.
     """
-    pieces = loose_pieces(doors, door_blocks, with_outlines=True)
+    solid = [feature for feature in doors if not is_dashed(feature.placed)]
+    pieces = loose_pieces(_without_leaves(solid), door_blocks, with_outlines=True)
     lines = as_lines(pieces)
     # the glass ends half-way between the wall's faces
     reach = spanning(lines, walls, FACES_MM / 2)
@@ -60,20 +68,76 @@ def windows(
         return []
     group = linked(abreast(lines), len(lines))
     is_window = _are_many(lines, group) & ~np.isin(group, group[_at_swings(lines, doors)])
-    return [feature for feature, does in zip(pieces, is_window, strict=True) if does]
+    found: defaultdict[int, list[Feature]] = defaultdict(list)
+    for k in np.flatnonzero(is_window):
+        found[int(group[k])].append(pieces[k])
+    return list(found.values())
 
 
-def window_findings(found: Iterable[Feature]) -> list[Finding]:
-    """What is to be said about windows on door layers."""
+def window_findings(
+    found: Iterable[Sequence[Feature]], terms: Terms, *, are_doors: bool
+) -> list[Finding]:
+    """What is to be said about windows on door layers.
+
+    Args:
+        found: The windows, each by its lines.
+        terms: The terms of the reading.
+        are_doors: Whether they are taken as doors, as windows have layers of their own.
+    """
+    of_layer: defaultdict[str, list[Feature]] = defaultdict(list)
+    for first, *_ in found:
+        of_layer[first.placed.layer].append(first)
+    say = _like_windows if are_doors else _windows
+    return [say(of_layer[layer], terms) for layer in sorted(of_layer)]
+
+
+def _windows(firsts: Sequence[Feature], terms: Terms) -> Finding:
+    """What is to be said about the windows of one layer, of each of which a line is given."""
+    return _finding(
+        firsts,
+        terms,
+        "are taken as a window, which stops the robot",
+        "draw windows on a layer of their own, or say what the layer is in a file for --layers",
+    )
+
+
+def _like_windows(firsts: Sequence[Feature], terms: Terms) -> Finding:
+    """What is to be said about doors of one layer that are drawn as windows are."""
+    return _finding(
+        firsts,
+        terms,
+        "are taken as a door, which lets the robot pass, as windows have layers of their own",
+        "draw windows on their layer, or say what this one is in a file for --layers",
+    )
+
+
+def _finding(firsts: Sequence[Feature], terms: Terms, are_taken: str, remedy: str) -> Finding:
+    placed = firsts[0].placed
+    x_mm, y_mm = terms.frame.to_drawing_mm([firsts[0].paths[0].start])[0]
+    return Finding(
+        "window-on-door-layer",
+        f"{LINES} or more lines abreast from jamb to jamb on door layer '{placed.layer}' "
+        f"{are_taken}: {len(firsts)} times, the first at ({x_mm:.1f}, {y_mm:.1f}) mm",
+        remedy,
+        layer=placed.layer,
+        handle=placed.handle,
+        at_mm=(float(x_mm), float(y_mm)),
+    )
+
+
+def _without_leaves(doors: Sequence[Feature]) -> list[Feature]:
+    """Features less the outlines as thin as a leaf within which nothing is drawn: no glass."""
+    drawn = shapely.STRtree([middle_line(path) for feature in doors for path in feature.paths])
+
+    def is_leaf(path: Path) -> bool:
+        if not path.closed or is_wide(path, LEAF_SLACK_MM):
+            return False
+        within = by_chords(path).buffer(-APART_MM)
+        return not (within.is_empty or drawn.query(within, predicate="intersects").size)
+
+    kept = (tuple(path for path in feature.paths if not is_leaf(path)) for feature in doors)
     return [
-        Finding(
-            "window-on-door-layer",
-            f"lines abreast from jamb to jamb on door layer '{layer}' are taken as windows, which "
-            "stop the robot",
-            "draw windows on a layer of their own, or say what the layer is in a file for --layers",
-            layer=layer,
-        )
-        for layer in sorted({feature.placed.layer for feature in found})
+        replace(feature, paths=paths) for feature, paths in zip(doors, kept, strict=True) if paths
     ]
 
 
