@@ -36,6 +36,35 @@ def test_likeliest_plan_is_read_and_the_choice_is_said(tmp_path: Path) -> None:
     assert standing(plan, "XYZ") == []
 
 
+def test_what_is_left_out_is_told_by_its_kind(tmp_path: Path) -> None:
+    (said,) = [f.message for f in plan_of(sheet(), tmp_path).findings if f.code == "left-out"]
+    # the section's two outlines, and the frame
+    assert said == "3 entities outside the plan are left out, of obstacles 2 wall"
+
+
+@pytest.mark.parametrize("places", [(0, 20_000), (20_000, 0)])
+def test_of_two_equal_plans_the_leftmost_is_read(places: tuple[int, int], tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    for x in places:
+        rectangle(document.modelspace(), x, 0, x + 8000, 6000, layer="WALL")
+    assert plan_of(document, tmp_path).frame.origin_mm == (0.0, 0.0)
+
+
+def test_facade_on_a_layer_that_nobody_knows_holds_one_plan_together(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    space = document.modelspace()
+    for x in (0, 12_000):
+        # a core, walls all around
+        rectangle(space, x, 0, x + 3000, 3000, layer="WALL")
+        rectangle(space, x + 200, 200, x + 2800, 2800, layer="WALL")
+    for x in (3000, 7500):
+        rectangle(space, x, 0, x + 4500, 200, layer="XYZ")
+        rectangle(space, x, 2800, x + 4500, 3000, layer="XYZ")
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == 2 * 3000 * 3000
+    assert not {"several-plans", "left-out"} & set(codes(plan))
+
+
 def test_plan_is_chosen_by_number(tmp_path: Path) -> None:
     assert plan_of(sheet(), tmp_path, plan=1).frame.origin_mm == (0.0, 0.0)
     assert plan_of(sheet(), tmp_path, plan=2).frame.origin_mm == (20_000.0, 0.0)

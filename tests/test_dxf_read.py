@@ -275,6 +275,14 @@ def test_array_of_blocks_stands_row_by_row(tmp_path: Path) -> None:
     assert places == {(x, y) for x in (1000, 3000, 5000) for y in (1000, 4000)}
 
 
+def test_array_may_have_more_copies_than_blocks_have_levels(tmp_path: Path) -> None:
+    document = drawing()
+    document.blocks.new("PIER").add_circle((0, 0), 100)
+    array = {"column_count": 9, "row_count": 8, "column_spacing": 1000, "row_spacing": 1000}
+    document.modelspace().add_blockref("PIER", (1000, 1000), {"layer": "COLUMN", **array})
+    assert len(standing(plan_of(document, tmp_path), "COLUMN")) == 72
+
+
 def test_hatch_turns_filled_and_empty_at_each_outline(tmp_path: Path) -> None:
     document = drawing()
     hatch = document.modelspace().add_hatch(dxfattribs={"layer": "HOLE"})

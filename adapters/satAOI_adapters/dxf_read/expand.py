@@ -151,9 +151,9 @@ def expand(document: Drawing, *, xrefs: Xrefs, include_hidden: bool) -> Expansio
     walk = _Walk(document, xrefs, include_hidden, findings=findings)
     stack = [_Level(iter(space), Matrix44(), BY_PARENT, (), "", document)]
     while stack:
-        limits.hold(
-            "levels of blocks in blocks", len(stack), limits.MAX_NESTING + 1, "explode some of them"
-        )
+        # the copies of an array lie side by side on the stack, at one level
+        depth = len(stack[-1].blocks)
+        limits.hold("levels of blocks in blocks", depth, limits.MAX_NESTING, "explode some of them")
         entity = next(stack[-1].entities, None)
         if entity is None:
             stack.pop()

@@ -2,6 +2,8 @@
 
 What is drawn falls into clusters with wide blank space between them. A cluster with walls is a
 plan, a section or a view; doors that swing and columns and a floor tell a plan from the others.
+Layers that nobody knows tell nothing of this, for they hold frames and legends as well as facades;
+but clusters that linework on them runs between from wall to wall are parts of one plan.
 """
 
 from collections import Counter
@@ -16,6 +18,7 @@ from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Arc, Point
 from satAOI_adapters.dxf_read.features import Feature
+from satAOI_adapters.dxf_read.groups import linked
 from satAOI_adapters.dxf_read.shapes import GeometryArray, is_thin
 from satAOI_adapters.layers import KINDS, Meaning
 from satAOI_geo.errors import InputError
@@ -29,6 +32,9 @@ BLANK_MM: Final = 2500.0
 
 TOUCH_MM: Final = 1.0
 """Boxes of clusters this close overlap."""
+
+JOINED_MM: Final = 50.0
+"""Linework this close to a wall runs up to it."""
 
 SMALLEST_MM: Final = 1500.0
 """A cluster in which no disc of this diameter fits, or that stops no robot, is no plan."""
@@ -72,12 +78,13 @@ class Cluster:
 
 def clusters(drawn: Drawn) -> list[Cluster]:
     """The clusters of a drawing that may be plans, the likeliest first."""
-    # what layers say nothing about lies anywhere: frames, legends, the neighbourhood
     pairs = [(m, feature) for m, features in drawn.items() if m is not None for feature in features]
     if not pairs:
         return []
     lines = rough_lines([feature for _, feature in pairs])
     owners = _grouped(lines)
+    if owners.any():
+        owners = _apart(lines, _joined(owners, lines, rough_lines(drawn.get(None, []))))
     counts: list[Counter[Meaning]] = [Counter() for _ in range(owners.max() + 1)]
     swings: Counter[int] = Counter()
     for owner, (meaning, feature) in zip(owners.tolist(), pairs, strict=True):
@@ -87,19 +94,21 @@ def clusters(drawn: Drawn) -> list[Cluster]:
         Cluster(hull, count, swings[owner])
         for owner, (hull, count) in enumerate(zip(_hulls(lines, owners), counts, strict=True))
     ]
-    return sorted((c for c in found if c.is_plan), key=lambda c: c.rank, reverse=True)
+    # of equals the leftmost, then lowest one
+    plans = sorted((c for c in found if c.is_plan), key=lambda c: c.bounds_mm)
+    return sorted(plans, key=lambda c: c.rank, reverse=True)
 
 
-def within(drawn: Drawn, part: BaseGeometry) -> tuple[Drawn, int]:
-    """What is drawn in a part of the plane, wholly or partly, and how much is left out."""
+def within(drawn: Drawn, part: BaseGeometry) -> tuple[Drawn, Counter[Meaning | None]]:
+    """What is drawn in a part of the plane, wholly or partly, and how much of what is left out."""
     reach = part.buffer(TOUCH_MM)
     shapely.prepare(reach)
     kept: Drawn = {}
-    n_left_out = 0
+    n_left_out: Counter[Meaning | None] = Counter()
     for meaning, features in drawn.items():
         is_in = shapely.intersects(reach, rough_lines(features))
         kept[meaning] = [feature for feature, keeps in zip(features, is_in, strict=True) if keeps]
-        n_left_out += len(features) - len(kept[meaning])
+        n_left_out[meaning] = len(features) - len(kept[meaning])
     return kept, n_left_out
 
 
@@ -176,13 +185,31 @@ def _grouped(lines: GeometryArray) -> npt.NDArray[np.int64]:
     """The number of the cluster that each drawn thing belongs to; hulls of clusters are apart."""
     if _are_under_one_hull(lines):
         return np.zeros(len(lines), dtype=np.int64)
-    owners = _dissolved(shapely.buffer(lines, BLANK_MM / 2, quad_segs=2), lines)
+    return _apart(lines, _dissolved(shapely.buffer(lines, BLANK_MM / 2, quad_segs=2), lines))
+
+
+def _apart(lines: GeometryArray, owners: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """The clusters, those made one whose hulls overlap."""
     while True:
         hulls = _hulls(lines, owners)
         merged = _dissolved(shapely.buffer(hulls, TOUCH_MM, quad_segs=2), hulls)
         if merged.max() + 1 == len(hulls):
             return owners
         owners = merged[owners]
+
+
+def _joined(
+    owners: npt.NDArray[np.int64], lines: GeometryArray, nameless: GeometryArray
+) -> npt.NDArray[np.int64]:
+    """The clusters, those made one that nameless linework runs between."""
+    n_clusters = owners.max() + 1
+    own, other = shapely.STRtree([*lines, *nameless]).query(
+        nameless, predicate="dwithin", distance=JOINED_MM
+    )
+    node = np.concatenate((owners, n_clusters + np.arange(len(nameless))))
+    pairs = np.column_stack((n_clusters + own, node[other]))
+    group = linked(pairs, n_clusters + len(nameless))[:n_clusters]
+    return np.unique(group, return_inverse=True)[1][owners]
 
 
 def _are_under_one_hull(lines: GeometryArray) -> bool:
