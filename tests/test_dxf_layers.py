@@ -117,6 +117,45 @@ def test_office_names_are_understood(name: str, meaning: Meaning | None) -> None
 
 
 @pytest.mark.parametrize(
+    "name",
+    [
+        "FLOOR_MARKING",
+        "FLOOR DRAINS",
+        "A-FLOR-DRAN",
+        "Floor Boxes",
+        "Floor-Below",
+        "SLAB_EDGE_BELOW",
+        "Slab Joints",
+        "FLOOR PLAN",
+        "FLOOR LEVEL",
+        "BODENPLATTE_FUGEN",
+        "BODENPLATTE-BEWEHRUNG",
+        "FUNDAMENTE_UNTER_BODENPLATTE",
+        "Boden_Markierung",
+        "PAVIMENTO_GIUNTI",
+        "LOSA JUNTAS",
+        "Posadzka_dylatacje",
+        "VLOER_DILATATIE",
+        "ZEMIN DERZ",
+        "ПОЛ_УКЛОН",
+        "Полы трапы",
+        "地面标线",
+        "地坪缝",
+        "地面分格",
+    ],
+)
+def test_what_is_drawn_on_a_floor_or_in_it_is_not_the_floor(name: str) -> None:
+    assert layer_table().of_layer(name).meaning is not Meaning.FLOOR
+
+
+@pytest.mark.parametrize(
+    "name", ["LEVEL 1 FLOOR", "Slab Outline", "S-SLAB-EDGE", "BODENPLATTE", "车间地面", "楼板边线"]
+)
+def test_the_floor_of_a_storey_and_its_edge_are_the_floor(name: str) -> None:
+    assert layer_table().of_layer(name).meaning is Meaning.FLOOR
+
+
+@pytest.mark.parametrize(
     ("name", "meaning"),
     [
         ("Tür_90", Meaning.DOOR),
