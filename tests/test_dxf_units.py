@@ -11,7 +11,7 @@ from satAOI_geo.errors import InputError, UnitError
 from satAOI_geo.units import MM_PER_UNIT
 from tests.drawings import codes, plan_of, rectangle
 
-INSUNITS = {"mm": 4, "cm": 5, "m": 6, "in": 1}
+INSUNITS = {"mm": 4, "cm": 5, "m": 6, "in": 1, "ft": 2}
 
 
 def flat(unit: str, header: str | None) -> Drawing:
@@ -45,7 +45,8 @@ def test_right_header_is_believed(unit: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("unit", "header"), [("m", "in"), ("m", "mm"), ("mm", "in"), ("in", "mm"), ("cm", "m")]
+    ("unit", "header"),
+    [("m", "in"), ("m", "mm"), ("mm", "in"), ("in", "mm"), ("cm", "m"), ("ft", "in")],
 )
 def test_header_that_doors_and_walls_contradict_is_refused_with_both_sizes(
     unit: str, header: str, tmp_path: Path

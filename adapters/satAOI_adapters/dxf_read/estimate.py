@@ -5,7 +5,7 @@ can be read on paper. Each sort of length speaks for the units in which it falls
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -21,7 +21,11 @@ from satAOI_geo.plan import FloatArray
 from satAOI_geo.units import MM_PER_UNIT
 
 CANDIDATES: Final = ("mm", "m", "cm", "in")
-"""Units that buildings are drawn in; whoever draws in feet says so in the header."""
+"""Units that buildings are drawn in."""
+
+SELDOM: Final = ("ft",)
+"""Units that are looked at only where none of these is likely: whoever draws in feet mostly says so
+in the header."""
 
 ENOUGH: Final = 0.6
 """Share of the evidence that must speak for the best unit."""
@@ -114,17 +118,24 @@ def estimate(
     known = [(sign, lengths) for sign, lengths in evidence if lengths.size]
     custom = CUSTOM if in_feet_and_inches else 0.0
     total = custom + sum(sign.weight for sign, _ in known)
-    scores = dict.fromkeys(CANDIDATES, 0.0)
+    scores = dict.fromkeys((*CANDIDATES, *SELDOM), 0.0)
     scores["in"] += custom / total
     for sign, lengths in known:
         for unit in scores:
             scores[unit] += sign.weight * _share(sign, lengths, unit) / total
-    best, second, *_ = sorted(scores, key=scores.__getitem__, reverse=True)
-    if scores[best] < ENOUGH or scores[best] - scores[second] < LEAD:
+    best = _leading(scores, CANDIDATES) or _leading(scores, scores)
+    if best is None:
         return None
     for_it = [sign.name for sign, lengths in known if _share(sign, lengths, best) >= ENOUGH]
     against = frozenset(unit for unit in MM_PER_UNIT if _is_ruled_out(unit, known))
     return Estimate(best, " and ".join(for_it), against - {best})
+
+
+def _leading(scores: Mapping[str, float], units: Iterable[str]) -> str | None:
+    """The unit that enough of the evidence speaks for, and clearly more than for the others."""
+    best, second, *_ = sorted(units, key=scores.__getitem__, reverse=True)
+    is_clear = scores[best] >= ENOUGH and scores[best] - scores[second] >= LEAD
+    return best if is_clear else None
 
 
 def _is_ruled_out(unit: str, known: Sequence[tuple[Sign, FloatArray]]) -> bool:
