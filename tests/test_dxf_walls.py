@@ -2,6 +2,7 @@
 
 import math
 import random
+from itertools import pairwise
 from pathlib import Path
 
 import ezdxf
@@ -616,7 +617,7 @@ def test_door_drawn_among_walls_is_left_out_and_the_walls_stay(leaf: str, tmp_pa
     assert "door-among-walls" in codes(plan)
 
 
-@pytest.mark.parametrize("arc", ["by hand", "of straight lines"])
+@pytest.mark.parametrize("arc", ["by hand", "polyline", "three sides", "lines", "spline"])
 def test_door_whose_arc_is_not_about_its_hinge_is_a_door_all_the_same(
     arc: str, tmp_path: Path
 ) -> None:
@@ -630,12 +631,31 @@ def test_door_whose_arc_is_not_about_its_hinge_is_a_door_all_the_same(
         bow = ConstructionArc.from_3p((2905, 210), (2430, 1000), (2805, 640))
         bow.add_to_layout(space, dxfattribs=on)
     else:
-        turns_rad = [math.radians(turn_deg) for turn_deg in range(0, 61, 10)]
+        step_deg = 20 if arc == "three sides" else 10
+        turns_rad = [math.radians(turn_deg) for turn_deg in range(0, 61, step_deg)]
         spots = [(2000 + 900 * math.cos(t), 200 + 900 * math.sin(t)) for t in turns_rad]
-        space.add_lwpolyline(spots, dxfattribs=on)
+        if arc == "lines":
+            for start, end in pairwise(spots):
+                space.add_line(start, end, dxfattribs=on)
+        elif arc == "spline":
+            space.add_spline(spots, dxfattribs=on)
+        else:
+            space.add_lwpolyline(spots, dxfattribs=on)
     plan = plan_of(document, tmp_path)
     assert [o.shape for o in plan.obstacles] == [o.shape for o in bare.obstacles]
     assert "door-among-walls" in codes(plan)
+
+
+def test_three_sides_of_a_square_about_the_end_of_a_line_are_no_swing(tmp_path: Path) -> None:
+    document = drawing()
+    space = document.modelspace()
+    # its corners are 636 mm from the middle, and the middles of its sides 450 mm
+    square = [(4000, 4000), (4900, 4000), (4900, 4900), (4000, 4900)]
+    space.add_lwpolyline(square, dxfattribs={"layer": "WALL"})
+    space.add_line((4000, 4000), (4450, 4450), dxfattribs={"layer": "WALL"})
+    plan = plan_of(document, tmp_path)
+    assert len(plan.obstacles) == 2
+    assert "door-among-walls" not in codes(plan)
 
 
 @pytest.mark.parametrize("thickness_mm", [100.0, 150.0, 200.0, 400.0])

@@ -1,23 +1,26 @@
 """Doors by their swings: an arc, and a leaf that runs from its hinge to it.
 
 Leaves and swings never stop the robot, also where they are drawn among walls or windows. Most arcs
-have the hinge for their centre; one drawn by hand, or by short straight lines, keeps as far from
-the hinge as the leaf is long.
+have the hinge for their centre; one drawn by hand, as a spline or by short straight lines, keeps as
+far from the hinge as the leaf is long.
 """
 
 import math
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
 from shapely.geometry import LineString
 from shapely.geometry import Point as Spot
 
-from satAOI_adapters.dxf_read.curves import Arc, Line, Path, Piece, Point
+from satAOI_adapters.dxf_read.curves import Arc, Line, Path, Piece, Point, Spline
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.groups import tree_of
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
+from satAOI_geo.plan import BoolArray
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
@@ -40,8 +43,11 @@ LEAST_TURN_MM: Final = 120.0
 WIDEST_RAD: Final = math.radians(190)
 """Doors are drawn open by up to half a turn."""
 
-FEWEST_SIDES: Final = 5
+FEWEST_SIDES: Final = 3
 """An arc drawn by straight lines has at least so many."""
+
+LEAST_COSINE: Final = math.cos(math.radians(45))
+"""And they turn by less from one to the next, where they are not one polyline."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,10 +77,31 @@ class _Bow:
 
 @dataclass(frozen=True, slots=True)
 class _Lines:
-    """Straight pieces, which may be leaves, and the tree of their ends, two a line."""
+    """Straight pieces, which may be leaves or short sides of a bow.
+
+    Attributes:
+        lines: The pieces.
+        is_alone: Which of them are no part of a polyline.
+        tree: Of their ends, two a line.
+    """
 
     lines: Sequence[Line]
+    is_alone: BoolArray
     tree: "cKDTree"
+
+    @classmethod
+    def of(cls, paths: Sequence[Path]) -> "_Lines":
+        """The straight pieces of paths, of which there is one at least."""
+        drawn = [(p, len(path.pieces)) for path in paths for p in path.pieces]
+        found = [(piece, n == 1) for piece, n in drawn if isinstance(piece, Line)]
+        lines = [line for line, _ in found]
+        is_alone = np.array([alone for _, alone in found])
+        return cls(lines, is_alone, tree_of([end for ln in lines for end in (ln.start, ln.end)]))
+
+    def spot(self, end: int) -> Point:
+        """Where one of the ends is, two a line."""
+        line = self.lines[end // 2]
+        return line.end if end % 2 else line.start
 
     def from_near(self, spot: Point, within_mm: float) -> list[tuple[Line, Point, Point]]:
         """Lines that end near a point, each with that end and the other one."""
@@ -89,11 +116,10 @@ class _Lines:
 def swings(features: Sequence[Feature]) -> list[Swing]:
     """The doors among what is drawn."""
     paths = [path for feature in features for path in feature.paths]
-    bows = [bow for path in paths for bow in _bows(path)]
-    lines = [piece for path in paths for piece in path.pieces if isinstance(piece, Line)]
-    if not bows or not lines:
+    if not any(isinstance(piece, Line) for path in paths for piece in path.pieces):
         return []
-    known = _Lines(lines, tree_of([end for line in lines for end in (line.start, line.end)]))
+    known = _Lines.of(paths)
+    bows = chain((bow for path in paths for bow in _bows(path)), _bows_of_lines(known))
     found = (_about_centre(bow, known) or _by_hand(bow, known) for bow in bows)
     return [swing for swing in found if swing is not None]
 
@@ -130,10 +156,57 @@ def may_be_swing(arc: Arc) -> bool:
 
 def _bows(path: Path) -> Iterator[_Bow]:
     for piece in path.pieces:
-        if isinstance(piece, Arc) and piece.sweep_rad <= WIDEST_RAD:
+        if not isinstance(piece, Line) and _may_turn(piece):
             yield _Bow((piece,), tuple(piece.chords()))
     if path.is_straight and not path.closed and len(path.pieces) >= FEWEST_SIDES:
-        yield _Bow(path.pieces, (path.start, *(piece.end for piece in path.pieces)))
+        corners = [path.start, *(piece.end for piece in path.pieces)]
+        yield _Bow(path.pieces, _with_middles(corners))
+
+
+def _may_turn(piece: Arc | Spline) -> bool:
+    """Whether a curve may be a door's arc, by a look at no more than its ends."""
+    if isinstance(piece, Arc):
+        return piece.sweep_rad <= WIDEST_RAD
+    return _spans_a_turn(piece.start, piece.end)
+
+
+def _bows_of_lines(known: _Lines) -> Iterator[_Bow]:
+    """The bows that lines shorter than any leaf make, drawn one by one and joined end to end."""
+    next_end = _joints(known)
+    for first in [end ^ 1 for end in next_end if end ^ 1 not in next_end]:
+        ends = [first, first ^ 1]
+        while ends[-1] in next_end:
+            ends += [next_end[ends[-1]], next_end[ends[-1]] ^ 1]
+        # a chain has two ends to begin with
+        if first < ends[-1] and len(ends) >= 2 * FEWEST_SIDES:
+            pieces = tuple(known.lines[end // 2] for end in ends[::2])
+            yield _Bow(pieces, _with_middles([known.spot(end) for end in (first, *ends[1::2])]))
+
+
+def _joints(known: _Lines) -> dict[int, int]:
+    """The end at which each end of a short line goes on, where it does so in a bow and alone."""
+    spots = np.asarray(known.tree.data)
+    outwards = spots - spots[np.arange(len(spots)) ^ 1]
+    length_mm = np.hypot(*outwards.T)
+    is_short = (length_mm < LEAST_LEAF_MM) & np.repeat(known.is_alone, 2)
+    ends = np.flatnonzero(is_short)
+    distances_mm, near = known.tree.query(spots[ends], k=3, distance_upper_bound=CLOSE_GAPS_MM)
+    # nearest are the end itself and one other, in either order
+    has_one = np.isfinite(distances_mm[:, 1]) & ~np.isfinite(distances_mm[:, 2])
+    one, other = ends[has_one], near[has_one, :2].sum(axis=1) - ends[has_one]
+    along = -(outwards[one] * outwards[other]).sum(axis=1)
+    goes_on = along >= LEAST_COSINE * length_mm[one] * length_mm[other]
+    goes_on &= is_short[other]
+    joints = dict(zip(one[goes_on].tolist(), other[goes_on].tolist(), strict=True))
+    return {end: on for end, on in joints.items() if joints.get(on) == end}
+
+
+def _with_middles(corners: Sequence[Point]) -> tuple[Point, ...]:
+    """Corners with the middle of each side: of a bow with few sides these are nearest the hinge."""
+    points = [corners[0]]
+    for (x, y), end in pairwise(corners):
+        points += [((x + end[0]) / 2, (y + end[1]) / 2), end]
+    return tuple(points)
 
 
 def _about_centre(bow: _Bow, known: _Lines) -> Swing | None:
@@ -161,7 +234,7 @@ def _by_hand(bow: _Bow, known: _Lines) -> Swing | None:
     """The door of an arc that begins at the tip of a leaf and keeps about its length away."""
     for points in (bow.points, bow.points[::-1]):
         tip, shut_at = points[0], points[-1]
-        if math.dist(tip, shut_at) < LEAST_TURN_MM:
+        if not _spans_a_turn(tip, shut_at):
             continue
         leaves = [
             (line, hinge)
@@ -175,6 +248,11 @@ def _by_hand(bow: _Bow, known: _Lines) -> Swing | None:
             drawn_by = (*bow.pieces, *sides, *_caps(sides, known))
             return Swing(hinge, math.dist(hinge, tip), (shut_at,), drawn_by)
     return None
+
+
+def _spans_a_turn(start: Point, end: Point) -> bool:
+    """Whether the ends of what may be a door's arc are as far from each other as such ends are."""
+    return LEAST_TURN_MM <= math.dist(start, end) <= 2 * LEAF_MM
 
 
 def _keeps_away(points: Sequence[Point], hinge: Point, leaf_mm: float) -> bool:
