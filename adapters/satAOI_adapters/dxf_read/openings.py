@@ -251,18 +251,23 @@ def _is_free(crossing: Crossing, tree: shapely.STRtree) -> bool:
 
 
 def _crossing(span: Span, tree: shapely.STRtree) -> Crossing:
+    walls = walls_at(span, tree)
+    depths = [depth_at(span, share * span.width_mm, walls) for share in PLACES]
+    beyond = [depth_at(span, at_mm, walls) for at_mm in (-BESIDE_MM, span.width_mm + BESIDE_MM)]
+    return Crossing(span, tuple(d for d in depths if d is not None), None not in beyond)
+
+
+def walls_at(span: Span, tree: shapely.STRtree) -> BaseGeometry:
+    """The walls around a door and its jambs."""
     near = tree.query(
         LineString((span.at(-BESIDE_MM, 0), span.at(span.width_mm + BESIDE_MM, 0))),
         predicate="dwithin",
         distance=WALL_MM,
     )
-    walls = shapely.union_all(tree.geometries[near])
-    depths = [_depth(span, share * span.width_mm, walls) for share in PLACES]
-    beyond = [_depth(span, at_mm, walls) for at_mm in (-BESIDE_MM, span.width_mm + BESIDE_MM)]
-    return Crossing(span, tuple(d for d in depths if d is not None), None not in beyond)
+    return shapely.union_all(tree.geometries[near])
 
 
-def _depth(span: Span, along_mm: float, walls: BaseGeometry) -> Depth | None:
+def depth_at(span: Span, along_mm: float, walls: BaseGeometry) -> Depth | None:
     """How deep the wall is that the door lies over at one place."""
     middle = Spot(span.at(along_mm, 0.0))
     across = span.across(along_mm)

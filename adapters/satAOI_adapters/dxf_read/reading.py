@@ -34,6 +34,7 @@ from satAOI_adapters.dxf_read.shapes import middle_line
 from satAOI_adapters.dxf_read.survey import Survey, survey
 from satAOI_adapters.dxf_read.swings import parted, swings
 from satAOI_adapters.dxf_read.terms import Terms
+from satAOI_adapters.dxf_read.thresholds import without_thresholds
 from satAOI_adapters.dxf_read.unclassified import unclassified
 from satAOI_adapters.dxf_read.windows import window_findings, windows
 from satAOI_adapters.layers import KINDS, Meaning
@@ -193,7 +194,9 @@ def _walls(
     rest, _ = parted(drawn[Meaning.DOOR], doors_on_layers)
     walls_too = {id(feature.placed) for feature in (*on_door_layers, *panes)}
     still = Still.of([feature for feature in rest if id(feature.placed) not in walls_too])
-    standing = with_openings(whole, doors, drawing.masks_of_doors(terms.frame), still, terms)
+    standing = without_thresholds(
+        with_openings(whole, doors, drawing.masks_of_doors(terms.frame), still, terms), doors, terms
+    )
     return Standing(
         standing.obstacles,
         (
