@@ -204,7 +204,7 @@ def test_walls_drawn_twice_with_a_trembling_hand_are_the_same_walls(
 def test_wider_gap_is_left_open_and_reported_with_both_ends(tmp_path: Path) -> None:
     document = drawing()
     document.modelspace().add_lwpolyline(
-        [(0, 12), (0, 300), (300, 300), (300, 0), (0, 0)], dxfattribs={"layer": "COLUMN"}
+        [(50, 62), (50, 350), (350, 350), (350, 50), (50, 50)], dxfattribs={"layer": "COLUMN"}
     )
     plan = plan_of(document, tmp_path)
     assert plan.obstacle_region().area == 0

@@ -35,6 +35,7 @@ from satAOI_adapters.dxf_read.survey import Survey, survey
 from satAOI_adapters.dxf_read.swings import parted, swings
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_adapters.dxf_read.thresholds import without_thresholds
+from satAOI_adapters.dxf_read.trenches import trenches
 from satAOI_adapters.dxf_read.unclassified import unclassified
 from satAOI_adapters.dxf_read.windows import window_findings, windows
 from satAOI_adapters.layers import KINDS, Meaning
@@ -89,15 +90,17 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
     standing = _standing(drawn, terms, drawing)
     sills = spans(drawn[Meaning.DOOR], [o.region() for o in standing.obstacles])
     floor = floor_of(drawn[Meaning.FLOOR], standing.obstacles, sills, terms)
+    between = trenches(drawn, standing.obstacles, floor.region, terms)
     others = unclassified(drawn[None], floor.region, standing.obstacles)
     plan = FloorPlan(
         floor=floor.region,
-        obstacles=_on(floor.region, (*standing.obstacles, *others.obstacles)),
+        obstacles=_on(floor.region, (*standing.obstacles, *between.obstacles, *others.obstacles)),
         findings=(
             *drawing.findings,
             *choice,
             *standing.findings,
             *floor.findings,
+            *between.findings,
             *others.findings,
             *start_findings,
         ),
