@@ -149,6 +149,36 @@ def test_leaf_that_slides_in_a_wall_drawn_whole_leaves_it_closed_and_is_said(
     assert said.at_mm == (4000.0, 5100.0)
 
 
+@pytest.mark.parametrize("leaf", ["line", "rectangle", "lines"])
+def test_leaf_without_a_swing_at_a_wall_drawn_whole_leaves_it_closed_and_is_said(
+    leaf: str, tmp_path: Path
+) -> None:
+    document = drawing()
+    space = document.modelspace()
+    outline(space)
+    if leaf == "rectangle":
+        rectangle(space, 4000, 5200, 4040, 6100, layer="A-DOOR")
+    else:
+        for x in (4000, 4040) if leaf == "lines" else (4000,):
+            space.add_line((x, 5200), (x, 6100), dxfattribs={"layer": "A-DOOR"})
+    plan = plan_of(document, tmp_path)
+    assert in_drawing(plan).equals(WALL)
+    (said,) = [finding for finding in plan.findings if finding.code == "door-in-wall"]
+    assert said.at_mm is not None
+    assert math.dist(said.at_mm, (4000, 5200)) <= 40
+
+
+@pytest.mark.parametrize("at_mm", [0, 50])
+def test_leaf_without_a_swing_in_an_opening_needs_no_word(at_mm: int, tmp_path: Path) -> None:
+    document = drawing()
+    space = document.modelspace()
+    rectangle(space, 0, 5000, 4000, 5200, layer="WALL")
+    rectangle(space, 5100, 5000, 10_000, 5200, layer="WALL")
+    x = 4000 + at_mm
+    space.add_line((x, 5200), (x, 6100), dxfattribs={"layer": "A-DOOR"})
+    assert not {"door-over-wall", "door-in-wall"} & set(codes(plan_of(document, tmp_path)))
+
+
 def test_leaf_that_slides_before_the_wall_beside_its_opening_needs_no_word(tmp_path: Path) -> None:
     document = drawing()
     rectangle(document.modelspace(), 0, 5000, 4000, 5200, layer="WALL")

@@ -4,7 +4,7 @@ Many offices lay the symbol of a door over a wall whose lines go on under it, wi
 or without. The swing tells the opening: it reaches from the hinge to where the tip of the leaf is
 when the door is shut. A door without a swing tells it by its mask, or by an outline from one face
 of the wall to the other. Where one with none of these leads through, a sliding door, nobody can
-tell; that much is said.
+tell; that much is said, and so it is of a leaf that stands open at a wall without any opening.
 
       ┌╮ leaf and swing
       │ ╲
@@ -16,7 +16,7 @@ import math
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final, TypeAlias
+from typing import Final, TypeAlias, TypeVar
 
 import shapely
 from shapely.geometry import LineString, Polygon
@@ -40,6 +40,11 @@ PLACES: Final = (0.25, 0.5, 0.75)
 
 BESIDE_MM: Final = 100.0
 """And how far beyond its ends, for the jambs of an opening."""
+
+OPEN_RAD: Final = tuple(math.radians(turn_deg) for turn_deg in (45, 90, 135, -45, -90, -135))
+"""By how much doors are turned whose leaf stands open, away from the wall."""
+
+GeometryT = TypeVar("GeometryT", bound=BaseGeometry)
 
 Depth: TypeAlias = tuple[float, float]
 """From where to where a wall reaches across a door's line, to the right below 0."""
@@ -77,6 +82,11 @@ class Span:
     def turned(self) -> "Span":
         """The same door on the other side of its hinge."""
         return Span(self.start, self.at(-self.width_mm, 0.0))
+
+    def swung(self, turn_rad: float) -> "Span":
+        """The same door turned about its hinge."""
+        cos, sin = math.cos(turn_rad), math.sin(turn_rad)
+        return Span(self.start, self.at(self.width_mm * cos, self.width_mm * sin))
 
     def across(self, along_mm: float) -> LineString:
         """A line across the door that is longer, to either side, than any wall is thick."""
@@ -132,10 +142,12 @@ class Still:
     Attributes:
         outlines: Closed outlines; one from face to face of a wall is the opening itself.
         symbols: Rectangles around all that is drawn close together.
+        leaves: The middle lines of what is as long and as thin as a leaf.
     """
 
     outlines: tuple[Polygon, ...] = ()
     symbols: tuple[Polygon, ...] = ()
+    leaves: tuple[LineString, ...] = ()
 
     @classmethod
     def of(cls, drawn: Sequence[Feature]) -> "Still":
@@ -152,11 +164,14 @@ class Still:
         return cls(
             _rectangles(closed),
             _rectangles([shapely.union_all(each) for each in together.values()]),
+            tuple(leaf for leaf in map(_leaf, lines) if leaf is not None),
         )
 
     def apart_from(self, doors: Sequence[Swing]) -> "Still":
         """Those of them that are no part of a door that swings."""
-        return Still(_alone(self.outlines, doors), _alone(self.symbols, doors))
+        return Still(
+            _alone(self.outlines, doors), _alone(self.symbols, doors), _alone(self.leaves, doors)
+        )
 
 
 def with_openings(
@@ -200,6 +215,8 @@ def with_openings(
         is_shut = not any(_is_free(crossing, tree) for crossing in crossings)
         if is_shut and not any(map(symbol.intersects, openings)):
             findings.extend(_left_closed(span, terms) for span, _ in _over(crossings))
+    ajar = [leaf for leaf in still.leaves if not any(map(leaf.intersects, openings))]
+    findings.extend(_left_closed(span, terms) for span in _at_whole_walls(ajar, tree))
     return Standing(_cut(walls.obstacles, openings), (*walls.findings, *findings))
 
 
@@ -208,7 +225,7 @@ def shut(door: Swing) -> list[Span]:
     return [Span(door.hinge, tip) for tip in door.shut_at]
 
 
-def _alone(places: Sequence[Polygon], doors: Sequence[Swing]) -> tuple[Polygon, ...]:
+def _alone(places: Sequence[GeometryT], doors: Sequence[Swing]) -> tuple[GeometryT, ...]:
     """The places at which no door swings."""
     hinges = shapely.STRtree([Spot(door.hinge) for door in doors])
     return tuple(
@@ -222,6 +239,37 @@ def _rectangles(shapes: Sequence[BaseGeometry]) -> tuple[Polygon, ...]:
     """The rectangles around some shapes; none where a shape is straight."""
     around = [shape.minimum_rotated_rectangle for shape in shapes]
     return tuple(rectangle for rectangle in around if isinstance(rectangle, Polygon))
+
+
+def _leaf(line: LineString) -> LineString | None:
+    """The middle line of what is as long and as thin as a leaf."""
+    around = line.minimum_rotated_rectangle
+    if isinstance(around, Polygon):
+        thickness, leaf = sorted(_middles(around), key=lambda span: span.width_mm)
+        is_thin = thickness.width_mm <= LEAF_SLACK_MM
+    else:
+        leaf, is_thin = Span(line.coords[0], line.coords[-1]), True
+    return leaf.line if is_thin and LEAST_LEAF_MM <= leaf.width_mm <= LEAF_MM else None
+
+
+def _at_whole_walls(leaves: Sequence[LineString], tree: shapely.STRtree) -> list[Span]:
+    """Where doors lie over a wall when they are shut that stand open at it, and none is free."""
+    found: list[Span] = []
+    for leaf in leaves:
+        for hinge, tip in (leaf.coords, leaf.coords[::-1]):
+            if not _is_at(hinge, tree) or _is_at(tip, tree):
+                continue
+            crossings = [_crossing(Span(hinge, tip).swung(turn), tree) for turn in OPEN_RAD]
+            over = [c.span for c in crossings if c.has_jambs and c.depth is not None]
+            # the two sides of a leaf are one door
+            is_new = all(math.dist(hinge, span.start) > LEAF_SLACK_MM for span in found)
+            if is_new and not any(crossing.is_free for crossing in crossings):
+                found.extend(over[:1])
+    return found
+
+
+def _is_at(spot: Point, tree: shapely.STRtree) -> bool:
+    return bool(tree.query(Spot(spot), predicate="dwithin", distance=LEAF_SLACK_MM).size)
 
 
 def _over(crossings: Sequence[Crossing]) -> list[tuple[Span, Depth]]:
