@@ -1,7 +1,8 @@
-"""Dashed lines among walls: what lies above the cut or under the floor is drawn so.
+"""Dashed lines: what lies above the cut or under the floor is drawn so.
 
 Lintels over doors, beams, edges of the storey above, foundations and centre lines show the robot
-nothing to run into, and taken as walls they would close every door that has a lintel.
+nothing to run into. Taken as walls they would close every door that has a lintel, and as things on
+the floor the footings would close it around each column.
 """
 
 from collections import defaultdict
@@ -24,19 +25,17 @@ DASH_CODE, SHAPE_CODE = 49, 340
 """Group codes of a pattern: a dash (below 0 a gap), and the text or shape that some hold."""
 
 
-def dashed_walls(seen: Sequence[Seen]) -> frozenset[int]:
-    """Identities of what is placed on wall layers and drawn dashed.
+def dashed_among(seen: Sequence[Seen]) -> frozenset[int]:
+    """Identities of what is drawn dashed on wall layers and on layers without a meaning.
 
     Where most walls are dashed it is a manner of drawing and counts for nothing; so it does on
     layers that the user's own file names.
     """
     walls = [entity for entity in seen if entity.verdict.meaning is Meaning.WALL]
-    dashed = [
-        id(entity.placed)
-        for entity in walls
-        if entity.verdict.certainty is not Certainty.GIVEN and is_dashed(entity.placed)
-    ]
-    return frozenset() if 2 * len(dashed) > len(walls) else frozenset(dashed)
+    nameless = [entity for entity in seen if entity.verdict.meaning is None]
+    guessed = [entity for entity in walls if entity.verdict.certainty is not Certainty.GIVEN]
+    dashed_walls = _dashed(guessed)
+    return frozenset() if 2 * len(dashed_walls) > len(walls) else dashed_walls | _dashed(nameless)
 
 
 def without_dashed(
@@ -57,6 +56,10 @@ def without_dashed(
         else:
             kept.append(feature)
     return kept, tuple(_finding(left_out[layer], frame) for layer in sorted(left_out))
+
+
+def _dashed(entities: Sequence[Seen]) -> frozenset[int]:
+    return frozenset(id(entity.placed) for entity in entities if is_dashed(entity.placed))
 
 
 def is_dashed(placed: Placed) -> bool:

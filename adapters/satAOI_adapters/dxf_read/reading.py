@@ -25,6 +25,7 @@ from satAOI_adapters.dxf_read.doors import (
 )
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.floor import floor_of
+from satAOI_adapters.dxf_read.floor_layers import outer_edges
 from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
 from satAOI_adapters.dxf_read.openings import Still, shut, with_openings
 from satAOI_adapters.dxf_read.options import ReadOptions
@@ -86,12 +87,20 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
     everything = drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
     chosen_part, choice = _chosen(everything, options, start_mm, frame)
     drawn = _with_doors(chosen_part)
-    terms = Terms(frame, options.close_gaps_mm, drawing.is_named, _region_mm(options, frame))
+    terms = Terms(
+        frame,
+        options.close_gaps_mm,
+        drawing.is_named,
+        _region_mm(options, frame),
+        drawing.given_layers(Meaning.FLOOR),
+    )
     standing = _standing(drawn, terms, drawing)
     sills = spans(drawn[Meaning.DOOR], [o.region() for o in standing.obstacles])
     floor = floor_of(drawn[Meaning.FLOOR], standing.obstacles, sills, terms)
     between = trenches(drawn, standing.obstacles, floor.region, terms)
-    others = unclassified(drawn[None], floor.region, standing.obstacles)
+    others = unclassified(
+        [*drawn[None], *floor.others], floor.region, standing.obstacles, drawing.dashed, frame
+    )
     plan = FloorPlan(
         floor=floor.region,
         obstacles=_on(floor.region, (*standing.obstacles, *between.obstacles, *others.obstacles)),
@@ -189,7 +198,7 @@ def _walls(
     # a drawing with layers for windows has none on those of its doors
     are_doors = bool(drawn[Meaning.WINDOW])
     panes = [] if are_doors else [pane for window in glazed for pane in window]
-    edges = _lines(drawn[Meaning.FLOOR], only_closed=True)
+    edges = outer_edges(drawn[Meaning.FLOOR])
     doors_on_layers = swings(drawn[Meaning.DOOR])
     doors = [*doors_on_walls, *doors_on_layers]
     of_doors = [*_lines(drawn[Meaning.DOOR]), *(span.line for door in doors for span in shut(door))]
@@ -225,13 +234,8 @@ def _doors_among_walls(count: int) -> tuple[Finding, ...]:
     )
 
 
-def _lines(drawn: Sequence[Feature], *, only_closed: bool = False) -> list[LineString]:
-    return [
-        middle_line(path)
-        for feature in drawn
-        for path in feature.paths
-        if path.closed or not only_closed
-    ]
+def _lines(drawn: Sequence[Feature]) -> list[LineString]:
+    return [middle_line(path) for feature in drawn for path in feature.paths]
 
 
 def _on(floor: Region, obstacles: Sequence[Obstacle]) -> tuple[Obstacle, ...]:

@@ -13,7 +13,7 @@ from shapely.geometry import Polygon
 
 from satAOI_adapters.dxf_read import limits
 from satAOI_adapters.dxf_read.curves import Point
-from satAOI_adapters.dxf_read.dashed import dashed_walls
+from satAOI_adapters.dxf_read.dashed import dashed_among
 from satAOI_adapters.dxf_read.entities import DRAWN, features_of, mask_of
 from satAOI_adapters.dxf_read.estimate import estimate
 from satAOI_adapters.dxf_read.expand import Expansion, Placed, expand
@@ -35,7 +35,7 @@ from satAOI_adapters.dxf_read.unread import (
     xref_findings,
 )
 from satAOI_adapters.dxf_read.xrefs import xrefs_in
-from satAOI_adapters.layers import LayerTable, Meaning, layer_table
+from satAOI_adapters.layers import Certainty, LayerTable, Meaning, layer_table
 from satAOI_geo.errors import DrawingError, EmptyPlanError, UnitError
 from satAOI_geo.plan import Finding, FloatArray, Frame, Source
 
@@ -69,7 +69,7 @@ class Survey:
         box: Left, bottom, right, top of what is drawn, in drawing units; None if nothing is.
         door_blocks: Names of blocks that are doors.
         door_masks: Masks on door layers and in doors' blocks.
-        dashed: Identities of what is placed on wall layers and drawn dashed.
+        dashed: Identities of what is drawn dashed on wall layers and on layers without a meaning.
         is_named: Whether layers tell what stops the robot, rather than everything being walls.
         middle: In the midst of it, in drawing units; a few strays do not move it.
         noticed: What was noticed so far, the unit aside.
@@ -140,6 +140,14 @@ class Survey:
         origin_mm = (float(math.floor(x_mm)), float(math.floor(y_mm)))
         return Frame(origin_mm=origin_mm, mm_per_unit=mm_per_unit)
 
+    def given_layers(self, meaning: Meaning) -> frozenset[str]:
+        """The layers to which the user's own file gives a meaning."""
+        return frozenset(
+            entity.placed.layer
+            for entity in self.seen
+            if entity.verdict.meaning is meaning and entity.verdict.certainty is Certainty.GIVEN
+        )
+
     def drawn(self, frame: Frame, wanted: Iterable[Meaning | None]) -> Drawn:
         """What the entities of some meanings draw, in millimetres of the frame.
 
@@ -196,19 +204,20 @@ def survey(path: Path, options: ReadOptions) -> Survey:
     near, box, middle, strays = _without_strays(rough)
     known = _unit(opened.document, near, box, expansion, option=options.units, name=path.name)
     near, by_look = _looked_at(near, known, is_named=meanings.is_named)
+    seen = tuple({id(entity): entity for entity, _ in near}.values())
     return Survey(
         path=path,
         sha256=opened.sha256,
         encoding=opened.encoding,
         document=opened.document,
-        seen=tuple({id(entity): entity for entity, _ in near}.values()),
+        seen=seen,
         expansion=expansion,
         known=known,
         box=box,
         middle=middle,
         door_blocks=_door_blocks(meanings.seen, table),
         door_masks=_door_masks(expansion.placed, table),
-        dashed=dashed_walls(meanings.seen),
+        dashed=dashed_among(seen),
         is_named=meanings.is_named,
         noticed=(
             *opened.findings,

@@ -1,72 +1,189 @@
 """What stands on the floor on layers whose names say nothing: obstacles, on the safe side."""
 
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import shapely
+from ezdxf.entities import LWPolyline, Polyline
 from shapely.geometry import LineString
-from shapely.geometry.base import BaseGeometry
 
+from satAOI_adapters.dxf_read.crossed import crossed
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.loops import Loop, loops
 from satAOI_adapters.dxf_read.obstacles import Standing, area_of
+from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.plans import rough_lines
-from satAOI_adapters.dxf_read.shapes import is_thin, shapes_of
-from satAOI_geo.plan import Finding, Kind, Obstacle, Region, polygons_in
+from satAOI_adapters.dxf_read.rooms import rooms_among
+from satAOI_adapters.dxf_read.shapes import TIE_MM, shapes_of
+from satAOI_geo.plan import Finding, Frame, Kind, Obstacle, Region
 
-ROOM_MM: Final = 1000.0
-"""An outline at least this wide may be that of a room."""
-
-ALONG_MM: Final = 100.0
-"""An outline this close to a wall or to another outline runs along it."""
-
-MOSTLY: Final = 0.5
-"""Share of an outline that must run along walls and other outlines to make it a room's."""
+PEN_MM: Final = 100.0
+"""An open line no wider than this is drawn with a broad pen: a joint, the mark of a section."""
 
 WHOLE: Final = 0.9
 """An outline around this share of the floor is a frame, not a thing on it."""
 
+SAY_WHAT: Final = "say what the layer is in a file for --layers"
 
-def unclassified(features: Sequence[Feature], floor: Region, known: Sequence[Obstacle]) -> Standing:
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """A closed shape on a layer without a meaning.
+
+    Attributes:
+        obstacle: As what it would stand on the floor.
+        features: What draws it.
+    """
+
+    obstacle: Obstacle
+    features: tuple[Feature, ...]
+
+    @classmethod
+    def of(cls, outline: Loop) -> "Thing":
+        """An outline of several features, named after the first of them."""
+        placed = outline.features[0].placed
+        obstacle = Obstacle(outline.shape, Kind.UNCLASSIFIED, placed.layer, placed.handle)
+        return cls(obstacle, outline.features)
+
+    def is_on(self, floor: Region) -> bool:
+        """Whether it lies on the floor and is not the frame around it."""
+        region = self.obstacle.region()
+        if not floor.intersects(region):
+            return False
+        shared_mm2 = floor.intersection(region).area
+        return bool(0 < shared_mm2 < WHOLE * floor.area)
+
+    def is_dashed(self, dashed: frozenset[int]) -> bool:
+        """Whether all of its outline is dashed; a fill never is."""
+        return all(
+            id(feature.placed) in dashed and not feature.is_area and not feature.width_mm
+            for feature in self.features
+        )
+
+
+def unclassified(
+    features: Sequence[Feature],
+    floor: Region,
+    known: Sequence[Obstacle],
+    dashed: frozenset[int],
+    frame: Frame,
+) -> Standing:
     """Closed shapes on layers without a meaning, as far as they are on the floor.
 
-    Patterns are left out, and so are outlines of rooms: wide, and along walls or each other for
-    half their length.
+    Patterns are left out, and so are outlines that are dashed or those of rooms. What is crossed
+    by its diagonals is an opening, whatever it runs along.
+
+    Args:
+        features: What is drawn on these layers.
+        floor: Of the plan.
+        known: What stands there on layers with a meaning.
+        dashed: Identities of what is placed and dashed.
+        frame: Of all these.
     """
     shapely.prepare(floor)
-    outlines = loops(features)
-    drawn = [*(t for feature in features for t in _closed(feature)), *map(_thing, outlines)]
-    things = [thing for thing in drawn if _is_on(thing, floor)]
-    rooms = _rooms(things, known)
-    in_outlines = {id(feature) for outline in outlines for feature in outline.features}
-    open_ones = [f for f in features if id(f) not in in_outlines and _is_open(f)]
-    reaches = shapely.intersects(floor, rough_lines(open_ones))
-    left_out = [feature for feature, does in zip(open_ones, reaches, strict=True) if does]
+    drawn = [_without_pen(feature) for feature in features]
+    crosses = [cross for cross in _crosses(drawn, known, dashed) if Thing.of(cross).is_on(floor)]
+    diagonals = {id(feature) for cross in crosses for feature in cross.features}
+    drawn = [feature for feature in drawn if id(feature) not in diagonals]
+    outlines = loops(drawn)
+    closed = [*(thing for feature in drawn for thing in _closed(feature)), *map(Thing.of, outlines)]
+    on_floor = [thing for thing in closed if thing.is_on(floor)]
+    openings = [Thing.of(cross).obstacle for cross in crosses]
+    others = _beside(openings, on_floor)
+    above = [thing.obstacle for thing in others if thing.is_dashed(dashed)]
+    things = [thing.obstacle for thing in others if not thing.is_dashed(dashed)]
+    rooms = rooms_among(things, known)
     standing = [thing for i, thing in enumerate(things) if i not in rooms]
+    in_outlines = {id(feature) for outline in outlines for feature in outline.features}
+    loose = [feature for feature in drawn if id(feature) not in in_outlines and _is_open(feature)]
     findings = [
         *_found(
             "unclassified",
             standing,
             "{count} closed shapes on layer '{layer}', {area:.2f} m² together, are taken as "
             "obstacles: the layer's name says nothing",
-            "say what the layer is in a file for --layers",
+            SAY_WHAT,
+            frame,
+        ),
+        *_found(
+            "crossed",
+            openings,
+            "{count} rectangles on layer '{layer}', {area:.2f} m² together, are crossed by their "
+            "diagonals, as openings are: they are taken as obstacles",
+            SAY_WHAT,
+            frame,
         ),
         *_found(
             "room-outline",
             [things[i] for i in sorted(rooms)],
             "{count} closed outlines on layer '{layer}', {area:.2f} m² together, run along walls "
             "or each other and are taken as rooms, not as obstacles",
-            "say what the layer is in a file for --layers",
+            f"{SAY_WHAT} if one of them is a pit or stops the robot",
+            frame,
         ),
-        *_left_out(left_out),
+        *_found(
+            "dashed",
+            above,
+            "{count} closed outlines on layer '{layer}', {area:.2f} m² together, are dashed, as "
+            "things above the cut or under the floor are drawn: they are left out",
+            "draw them continuous, or name the layer in a file for --layers, if they stop the "
+            "robot",
+            frame,
+        ),
+        *_left_out(loose, floor),
     ]
-    return Standing(tuple(standing), tuple(findings))
+    return Standing((*standing, *openings), tuple(findings))
 
 
-def _thing(outline: Loop) -> Obstacle:
-    placed = outline.features[0].placed
-    return Obstacle(outline.shape, Kind.UNCLASSIFIED, placed.layer, placed.handle)
+def _without_pen(feature: Feature) -> Feature:
+    """An open line that a broad pen drew, as a line without width; all else as it is."""
+    is_broad = feature.width_mm > PEN_MM + TIE_MM or any(path.closed for path in feature.paths)
+    return feature if is_broad else replace(feature, width_mm=0.0)
+
+
+def _crosses(
+    drawn: Sequence[Feature], known: Sequence[Obstacle], dashed: frozenset[int]
+) -> list[Loop]:
+    """The signs for openings; a dashed cross is above the cut, as all that is dashed."""
+    walls = [obstacle.region() for obstacle in known if obstacle.kind is Kind.WALL]
+    return crossed([f for f in drawn if id(f.placed) not in dashed], drawn, walls)
+
+
+def _beside(openings: Sequence[Obstacle], things: Iterable[Thing]) -> list[Thing]:
+    """The things that do not lie wholly in openings."""
+    inside = shapely.union_all([opening.region() for opening in openings]).buffer(CLOSE_GAPS_MM)
+    shapely.prepare(inside)
+    return [thing for thing in things if not inside.contains(thing.obstacle.region())]
+
+
+def _is_open(feature: Feature) -> bool:
+    """Whether a feature is a pattern or has open lines: neither counts as a thing."""
+    if feature.is_area:
+        return _is_pattern(feature) or _is_arrow(feature)
+    return not feature.width_mm and not all(path.closed for path in feature.paths)
+
+
+def _left_out(loose: Sequence[Feature], floor: Region) -> list[Finding]:
+    """What is to be said about lines and patterns, as far as they reach the floor."""
+    on_floor = shapely.intersects(floor, rough_lines(loose))
+    reaching = [feature for feature, does in zip(loose, on_floor, strict=True) if does]
+    entities = {id(feature.placed): feature for feature in reaching}.values()
+    lines: Counter[str] = Counter()
+    patterns: Counter[str] = Counter()
+    for feature in entities:
+        (patterns if _is_pattern(feature) else lines)[feature.placed.layer] += 1
+    return [
+        Finding(
+            "unclassified-left-out",
+            f"{_counted(lines[layer], patterns[layer])} on layer '{layer}' on the floor are left "
+            "out: the layer's name says nothing",
+            f"{SAY_WHAT} if they stop the robot",
+            layer=layer,
+        )
+        for layer in {**lines, **patterns}
+    ]
 
 
 def _counted(n_lines: int, n_patterns: int) -> str:
@@ -74,41 +191,17 @@ def _counted(n_lines: int, n_patterns: int) -> str:
     return " and ".join(f"{count} {what}" for count, what in said if count)
 
 
-def _is_open(feature: Feature) -> bool:
-    """Whether a feature is a pattern or has open lines: neither counts as a thing."""
-    return _is_pattern(feature) or (
-        not feature.is_area and not feature.width_mm and not all(p.closed for p in feature.paths)
-    )
-
-
-def _left_out(features: Sequence[Feature]) -> list[Finding]:
-    lines: Counter[str] = Counter()
-    patterns: Counter[str] = Counter()
-    for feature in features:
-        (patterns if feature.is_area else lines)[feature.placed.layer] += 1
-    return [
-        Finding(
-            "unclassified-left-out",
-            f"{_counted(lines[layer], patterns[layer])} on layer '{layer}' on the floor are left "
-            "out: the layer's name says nothing",
-            "say what the layer is in a file for --layers if they stop the robot",
-            layer=layer,
-        )
-        for layer in {**lines, **patterns}
-    ]
-
-
-def _closed(feature: Feature) -> list[Obstacle]:
+def _closed(feature: Feature) -> list[Thing]:
     """The closed shapes of a feature; none of a pattern or a line."""
     placed = feature.placed
-    if feature.is_area:
-        shapes = [] if _is_pattern(feature) else area_of(feature)
-    elif feature.width_mm:
+    if _is_open(feature) and feature.is_area:
+        return []
+    if feature.is_area or feature.width_mm:
         shapes = area_of(feature)
     else:
         shapes = [s for path in feature.paths if path.closed for s in shapes_of(path)]
     return [
-        Obstacle(shape, Kind.UNCLASSIFIED, placed.layer, placed.handle)
+        Thing(Obstacle(shape, Kind.UNCLASSIFIED, placed.layer, placed.handle), (feature,))
         for shape in shapes
         if not isinstance(shape, LineString)
     ]
@@ -119,57 +212,38 @@ def _is_pattern(feature: Feature) -> bool:
     return feature.is_area and feature.placed.kind == "HATCH" and not entity.dxf.solid_fill
 
 
-def _is_on(thing: Obstacle, floor: Region) -> bool:
-    """Whether a shape lies on the floor and is not the frame around it."""
-    region = thing.region()
-    if not floor.intersects(region):
-        return False
-    shared_mm2 = floor.intersection(region).area
-    return bool(0 < shared_mm2 < WHOLE * floor.area)
+def _is_arrow(feature: Feature) -> bool:
+    """Whether a fill is a piece of an open polyline whose width varies, as arrows are drawn."""
+    entity = feature.placed.entity
+    return feature.is_area and isinstance(entity, LWPolyline | Polyline) and not entity.is_closed
 
 
-def _rooms(things: Sequence[Obstacle], known: Sequence[Obstacle]) -> set[int]:
-    """Which of the shapes are outlines of rooms."""
-    wide = {
-        i: thing.region()
-        for i, thing in enumerate(things)
-        if any(not is_thin(part, ROOM_MM) for part in polygons_in([thing.region()]))
-    }
-    walls = [obstacle.region() for obstacle in known if obstacle.kind is Kind.WALL]
-    lines = [*walls, *(region.boundary for region in wide.values())]
-    owners = [-1] * len(walls) + list(wide)
-    tree = shapely.STRtree(lines)
-    return {i for i, region in wide.items() if _runs_along(i, region, lines, owners, tree)}
-
-
-def _runs_along(
-    own: int,
-    region: BaseGeometry,
-    lines: Sequence[BaseGeometry],
-    owners: Sequence[int],
-    tree: shapely.STRtree,
-) -> bool:
-    rim = region.boundary
-    near = [
-        lines[i]
-        for i in tree.query(rim, predicate="dwithin", distance=ALONG_MM)
-        if owners[i] != own
-    ]
-    along = rim.intersection(shapely.union_all(near).buffer(ALONG_MM))
-    return bool(along.length >= MOSTLY * rim.length)
-
-
-def _found(code: str, things: Sequence[Obstacle], message: str, remedy: str) -> list[Finding]:
-    counts = Counter(thing.layer for thing in things)
-    areas_mm2: defaultdict[str, float] = defaultdict(float)
+def _found(
+    code: str, things: Sequence[Obstacle], message: str, remedy: str, frame: Frame
+) -> list[Finding]:
+    """A finding for each layer, with the handle and the place of the first thing on it."""
+    by_layer: defaultdict[str, list[Obstacle]] = defaultdict(list)
     for thing in things:
-        areas_mm2[thing.layer] += thing.region().area
+        by_layer[thing.layer].append(thing)
     return [
         Finding(
             code,
-            message.format(count=count, layer=layer, area=areas_mm2[layer] / 1e6),
+            message.format(
+                count=len(on_layer),
+                layer=layer,
+                area=sum(thing.region().area for thing in on_layer) / 1e6,
+            ),
             remedy,
             layer=layer,
+            handle=on_layer[0].handle,
+            at_mm=_place_mm(on_layer[0], frame),
         )
-        for layer, count in counts.items()
+        for layer, on_layer in by_layer.items()
     ]
+
+
+def _place_mm(thing: Obstacle, frame: Frame) -> tuple[float, float]:
+    """A spot in a shape, in the drawing's axes."""
+    spot = thing.region().representative_point()
+    x_mm, y_mm = frame.to_drawing_mm([(spot.x, spot.y)])[0]
+    return float(x_mm), float(y_mm)

@@ -1,0 +1,74 @@
+"""Which closed outlines on layers without a meaning are those of rooms.
+
+A room's outline runs along walls all around but for its doorways. A pit or a machine in a corner
+runs along two walls and has its other two sides out on the floor.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from satAOI_adapters.dxf_read.shapes import GeometryArray, is_thin
+from satAOI_geo.plan import IntArray, Kind, Obstacle, polygons_in
+
+ROOM_MM: Final = 1000.0
+"""An outline at least this wide may be that of a room."""
+
+ALONG_MM: Final = 100.0
+"""An outline this close to a wall or to another outline runs along it."""
+
+NEARLY: Final = 0.8
+"""Share of an outline with something along it that leaves nothing but doorways.
+
+A door of 0.9 m in a closet of 1.1 × 1.5 m leaves 0.83; what fills a niche as deep as wide has 0.75.
+"""
+
+
+def rooms_among(things: Sequence[Obstacle], known: Sequence[Obstacle]) -> set[int]:
+    """The indices of those outlines that run along walls, or along those of other rooms.
+
+    Outlines side by side hold each other up only as long as walls hold up the whole group: one
+    that falls takes its neighbours with it, in whatever order they are looked at.
+    """
+    wide = [i for i, thing in enumerate(things) if _is_wide(thing)]
+    if not wide:
+        return set()
+    walls = [obstacle.region() for obstacle in known if obstacle.kind is Kind.WALL]
+    rims = [things[i].region().boundary for i in wide]
+    lines: GeometryArray = np.array([*walls, *rims], dtype=object)
+    own_line = np.arange(len(walls), len(lines))
+    near = _near(rims, own_line, lines)
+    fallen: set[int] = set()
+    pending = set(range(len(wide)))
+    while pending:
+        held_by = {i: [k for k in near[i] if k - len(walls) not in fallen] for i in pending}
+        falls = {i for i in pending if share_along(rims[i], lines[held_by[i]]) < NEARLY}
+        fallen |= falls
+        pending = {k - len(walls) for i in falls for k in near[i] if k >= len(walls)} - fallen
+    return {wide[i] for i in range(len(wide)) if i not in fallen}
+
+
+def share_along(rim: BaseGeometry, lines: Sequence[BaseGeometry] | GeometryArray) -> float:
+    """Which share of an outline has lines or walls along it."""
+    beside = shapely.union_all(lines).buffer(ALONG_MM)
+    return float(rim.intersection(beside).length / rim.length)
+
+
+def _is_wide(thing: Obstacle) -> bool:
+    return any(not is_thin(part, ROOM_MM) for part in polygons_in([thing.region()]))
+
+
+def _near(
+    rims: Sequence[BaseGeometry], own_line: IntArray, lines: GeometryArray
+) -> list[list[int]]:
+    """The indices of the lines that each outline may run along, itself left out."""
+    rim, line = shapely.STRtree(lines).query(rims, predicate="dwithin", distance=ALONG_MM)
+    is_other = own_line[rim] != line
+    rim, line = rim[is_other], line[is_other]
+    found: list[list[int]] = [[] for _ in rims]
+    for i, k in zip(rim.tolist(), line.tolist(), strict=True):
+        found[i].append(k)
+    return found

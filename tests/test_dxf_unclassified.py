@@ -1,0 +1,234 @@
+"""Closed shapes on layers that nobody named: rooms, openings, lines of a pen, dashed outlines."""
+
+from pathlib import Path
+
+import pytest
+from ezdxf.document import Drawing
+from shapely.geometry import box
+
+from satAOI_geo.plan import FloorPlan, Kind
+from tests.drawings import codes, drawing, plan_of, rectangle, standing
+
+DASHES = [0.375, 0.25, -0.125]
+
+SQUARE = [(4000, 4000), (6000, 4000), (6000, 6000), (4000, 6000)]
+DIAGONALS = [((4000, 4000), (6000, 6000)), ((6000, 4000), (4000, 6000))]
+
+
+def hall() -> Drawing:
+    """A floor of 10 × 10 m inside walls of 0.2 m."""
+    document = drawing()
+    document.linetypes.add("HIDDEN", DASHES)
+    rectangle(document.modelspace(), 0, 0, 10_000, 10_000, layer="WALL")
+    rectangle(document.modelspace(), -200, -200, 10_200, 10_200, layer="WALL")
+    return document
+
+
+def shapes_in(document: Drawing, folder: Path, *boxes: tuple[float, ...]) -> FloorPlan:
+    """The plan of a drawing with these rectangles on a layer that says nothing."""
+    for x0, y0, x1, y1 in boxes:
+        rectangle(document.modelspace(), x0, y0, x1, y1, layer="XYZ")
+    return plan_of(document, folder)
+
+
+def add_lines(document: Drawing, *ends: tuple[tuple[float, float], ...], layer: str) -> None:
+    for start, end in ends:
+        document.modelspace().add_line(start, end, dxfattribs={"layer": layer})
+
+
+def said(plan: FloorPlan, code: str) -> list[str]:
+    """The layers of findings of one code."""
+    return [finding.layer for finding in plan.findings if finding.code == code]
+
+
+@pytest.mark.parametrize(
+    "pit",
+    [
+        (7000, 7500, 10_000, 10_000),  # in a corner
+        (8200, 0, 10_000, 1600),
+        (4000, 0, 6000, 1500),  # at one wall
+        (50, 50, 3000, 3000),  # not quite at the walls
+    ],
+)
+def test_pit_against_walls_is_an_obstacle_not_a_room(
+    pit: tuple[float, ...], tmp_path: Path
+) -> None:
+    plan = shapes_in(hall(), tmp_path, pit)
+    (thing,) = standing(plan, "XYZ")
+    assert thing.shape.equals(box(*pit))
+    assert "room-outline" not in codes(plan)
+
+
+def test_pit_in_a_niche_as_deep_as_wide_is_an_obstacle(tmp_path: Path) -> None:
+    document = hall()
+    for x in (3800, 6000):
+        rectangle(document.modelspace(), x, 0, x + 200, 2000, layer="WALL")
+    assert len(standing(shapes_in(document, tmp_path, (4000, 0, 6000, 2000)), "XYZ")) == 1
+
+
+def test_closet_with_a_door_in_it_is_a_room(tmp_path: Path) -> None:
+    document = hall()
+    rectangle(document.modelspace(), 1100, 0, 1300, 1700, layer="WALL")
+    rectangle(document.modelspace(), 900, 1500, 1300, 1700, layer="WALL")
+    plan = shapes_in(document, tmp_path, (0, 0, 1100, 1500))
+    assert standing(plan, "XYZ") == []
+    assert said(plan, "room-outline") == ["XYZ"]
+
+
+def test_shapes_side_by_side_do_not_make_each_other_rooms(tmp_path: Path) -> None:
+    pits = [(x, y, x + 1200, y + 1200) for x in (0, 1250, 2500) for y in (0, 1250, 2500)]
+    assert len(standing(shapes_in(hall(), tmp_path, *pits), "XYZ")) == len(pits)
+
+
+def test_two_zones_that_share_an_open_edge_fill_the_hall_as_rooms(tmp_path: Path) -> None:
+    zones = [(0, 0, 4000, 10_000), (4000, 0, 10_000, 10_000)]
+    plan = shapes_in(hall(), tmp_path, *zones)
+    assert standing(plan, "XYZ") == []
+    assert said(plan, "room-outline") == ["XYZ"]
+
+
+@pytest.mark.parametrize("sides", ["outline", "lines", "walls"])
+def test_rectangle_crossed_by_its_diagonals_is_an_opening(sides: str, tmp_path: Path) -> None:
+    document = hall()
+    if sides == "outline":
+        rectangle(document.modelspace(), 4000, 4000, 6000, 6000, layer="XYZ")
+    elif sides == "lines":
+        add_lines(document, *zip(SQUARE, [*SQUARE[1:], SQUARE[0]], strict=True), layer="XYZ")
+    else:
+        rectangle(document.modelspace(), 4000, 4000, 6000, 6000, layer="WALL")
+        rectangle(document.modelspace(), 3800, 3800, 6200, 6200, layer="WALL")
+    add_lines(document, *DIAGONALS, layer="XYZ")
+    plan = plan_of(document, tmp_path)
+    (thing,) = standing(plan, "XYZ")
+    assert thing.kind is Kind.UNCLASSIFIED
+    assert thing.shape.equals(box(4000, 4000, 6000, 6000))
+    (finding,) = [finding for finding in plan.findings if finding.layer == "XYZ"]
+    assert finding.code == "crossed"
+    assert finding.handle
+    assert finding.at_mm is not None
+    assert finding.remedy
+
+
+def test_crossed_rectangle_is_an_opening_even_where_walls_are_all_around(tmp_path: Path) -> None:
+    document = hall()
+    rectangle(document.modelspace(), 4000, 4000, 6000, 6000, layer="WALL")
+    rectangle(document.modelspace(), 3800, 3800, 6200, 6200, layer="WALL")
+    bare = shapes_in(document, tmp_path, (4000, 4000, 6000, 6000))
+    assert said(bare, "room-outline") == ["XYZ"]
+    add_lines(document, *DIAGONALS, layer="ABC")
+    plan = plan_of(document, tmp_path)
+    assert "room-outline" not in codes(plan)
+    assert plan.obstacle_region().contains(box(4000, 4000, 6000, 6000))
+
+
+def test_cross_without_sides_is_left_out_and_said(tmp_path: Path) -> None:
+    document = hall()
+    add_lines(document, *DIAGONALS, layer="XYZ")
+    plan = plan_of(document, tmp_path)
+    assert standing(plan, "XYZ") == []
+    assert said(plan, "unclassified-left-out") == ["XYZ"]
+
+
+def test_dashed_cross_is_no_opening(tmp_path: Path) -> None:
+    document = hall()
+    document.layers.add("XYZ", linetype="HIDDEN")
+    rectangle(document.modelspace(), 4000, 4000, 6000, 6000, layer="XYZ")
+    add_lines(document, *DIAGONALS, layer="XYZ")
+    plan = plan_of(document, tmp_path)
+    assert standing(plan, "XYZ") == []
+    assert said(plan, "dashed") == ["XYZ"]
+
+
+@pytest.mark.parametrize(("width_mm", "count"), [(20, 0), (100, 0), (150, 1)])
+def test_open_line_of_a_broad_pen_is_a_line_and_one_broader_is_a_thing(
+    width_mm: float, count: int, tmp_path: Path
+) -> None:
+    document = hall()
+    document.modelspace().add_lwpolyline(
+        [(5000, 0), (5000, 10_000)], dxfattribs={"layer": "XYZ", "const_width": width_mm}
+    )
+    plan = plan_of(document, tmp_path)
+    assert len(standing(plan, "XYZ")) == count
+    assert said(plan, "unclassified" if count else "unclassified-left-out") == ["XYZ"]
+
+
+def test_outline_of_a_broad_pen_stops_the_robot(tmp_path: Path) -> None:
+    document = hall()
+    document.modelspace().add_lwpolyline(
+        SQUARE, close=True, dxfattribs={"layer": "XYZ", "const_width": 20}
+    )
+    assert len(standing(plan_of(document, tmp_path), "XYZ")) == 1
+
+
+def test_arrow_of_a_tapered_line_is_one_open_line(tmp_path: Path) -> None:
+    document = hall()
+    arrow = [(2000, 2000, 0, 0), (4000, 2000, 250, 0), (4500, 2000, 0, 0)]
+    document.modelspace().add_lwpolyline(arrow, format="xyse", dxfattribs={"layer": "XYZ"})
+    plan = plan_of(document, tmp_path)
+    assert standing(plan, "XYZ") == []
+    (finding,) = [f for f in plan.findings if f.code == "unclassified-left-out"]
+    assert finding.message.startswith("1 open lines on layer 'XYZ'")
+
+
+@pytest.mark.parametrize("drawn", ["outline", "layer", "lines", "block"])
+def test_dashed_outline_is_left_out_and_said(drawn: str, tmp_path: Path) -> None:
+    document = hall()
+    space = document.modelspace()
+    layer_linetype = "HIDDEN" if drawn in {"layer", "block"} else "Continuous"
+    document.layers.add("XYZ", linetype=layer_linetype)
+    if drawn == "block":
+        rectangle(document.blocks.new("B1"), 4000, 4000, 6000, 6000, layer="0")
+        space.add_blockref("B1", (0, 0), {"layer": "XYZ"})
+    elif drawn == "lines":
+        add_lines(document, *zip(SQUARE, [*SQUARE[1:], SQUARE[0]], strict=True), layer="XYZ")
+    else:
+        rectangle(space, 4000, 4000, 6000, 6000, layer="XYZ")
+    for entity in space.query("*[layer=='XYZ']"):
+        entity.dxf.linetype = "BYLAYER" if layer_linetype == "HIDDEN" else "HIDDEN"
+    plan = plan_of(document, tmp_path)
+    assert standing(plan, "XYZ") == []
+    (finding,) = [finding for finding in plan.findings if finding.layer == "XYZ"]
+    assert finding.code == "dashed"
+    assert finding.message.startswith("1 closed outlines on layer 'XYZ', 4.00 m² together")
+    assert finding.at_mm == (5000.0, 5000.0)
+    assert finding.handle
+    assert "--layers" in finding.remedy
+
+
+def test_outline_with_one_side_that_is_not_dashed_is_an_obstacle(tmp_path: Path) -> None:
+    document = hall()
+    add_lines(document, *zip(SQUARE, [*SQUARE[1:], SQUARE[0]], strict=True), layer="XYZ")
+    for line in document.modelspace().query("LINE")[1:]:
+        line.dxf.linetype = "HIDDEN"
+    assert len(standing(plan_of(document, tmp_path), "XYZ")) == 1
+
+
+def test_dashed_outline_on_a_layer_with_a_meaning_is_an_obstacle(tmp_path: Path) -> None:
+    document = hall()
+    document.layers.add("EQUIPMENT", linetype="HIDDEN")
+    rectangle(document.modelspace(), 4000, 4000, 6000, 6000, layer="EQUIPMENT")
+    assert len(standing(plan_of(document, tmp_path), "EQUIPMENT")) == 1
+
+
+def test_where_most_walls_are_dashed_a_dashed_outline_is_an_obstacle(tmp_path: Path) -> None:
+    document = hall()
+    for wall in document.modelspace():
+        wall.dxf.linetype = "HIDDEN"
+    document.layers.add("XYZ", linetype="HIDDEN")
+    plan = shapes_in(document, tmp_path, (4000, 4000, 6000, 6000))
+    assert len(standing(plan, "XYZ")) == 1
+
+
+def test_fill_is_an_obstacle_whatever_its_linetype(tmp_path: Path) -> None:
+    document = hall()
+    on = {"layer": "XYZ", "linetype": "HIDDEN"}
+    document.modelspace().add_solid([SQUARE[0], SQUARE[1], SQUARE[3], SQUARE[2]], on)
+    assert len(standing(plan_of(document, tmp_path), "XYZ")) == 1
+
+
+def test_obstacle_without_a_name_is_said_with_handle_and_place(tmp_path: Path) -> None:
+    plan = shapes_in(hall(), tmp_path, (4000, 4000, 6000, 6000))
+    (finding,) = [finding for finding in plan.findings if finding.code == "unclassified"]
+    (thing,) = standing(plan, "XYZ")
+    assert finding.handle == thing.handle
+    assert finding.at_mm == (5000.0, 5000.0)
