@@ -70,8 +70,12 @@ def test_opening_wider_than_the_widest_door_lets_the_floor_leak(tmp_path: Path) 
 def test_floor_that_nothing_encloses_is_guessed_between_named_walls_and_said(
     tmp_path: Path,
 ) -> None:
-    plan = plan_of(house(opening_mm=2600.0), tmp_path)
-    assert plan.floor.area == OUTSIDE.area
+    document = drawing(floor=False)
+    # three sides of a yard whose fourth side, of 20 m, is open
+    for x0, y0, x1, y1 in ((-200, 0, 0, 8000), (20_000, 0, 20_200, 8000), (0, 7800, 20_000, 8000)):
+        rectangle(document.modelspace(), x0, y0, x1, y1, layer="WALL")
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == 20_400 * 8000
     assert "floor-guessed" in codes(plan)
 
 

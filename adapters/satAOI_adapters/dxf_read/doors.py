@@ -14,12 +14,18 @@ import shapely
 from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
-from satAOI_adapters.dxf_read.curves import Line, Path
+from satAOI_adapters.dxf_read.curves import Arc, Line, Path, Point
+from satAOI_adapters.dxf_read.enclosure import OPENING_MM
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.groups import linked, tree_of
 from satAOI_adapters.dxf_read.linework import PARALLEL
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
-from satAOI_adapters.dxf_read.swings import LEAF_MM, LEAST_LEAF_MM
+from satAOI_adapters.dxf_read.swings import (
+    LEAF_MM,
+    LEAF_SLACK_MM,
+    LEAST_LEAF_MM,
+    WIDEST_RAD,
+)
 from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray
 
 JAMB_MM: Final = 300.0
@@ -33,6 +39,9 @@ PARTITION_MM: Final = 2500.0
 
 CORNER: Final = 0.5
 """Least sine of the angle between the two sides of a wall's corner: 30°."""
+
+GATE_LEAF_MM: Final = 4000.0
+"""No leaf of a gate is longer."""
 
 FACES_MM: Final = 400.0
 """The two faces of a partition are no farther apart."""
@@ -107,18 +116,35 @@ def partition_findings(found: Sequence[Feature]) -> list[Finding]:
 
 
 def spans(doors: Sequence[Feature], walls: Sequence[BaseGeometry]) -> list[LineString]:
-    """The straight lines of doors that reach from wall to wall across an opening.
+    """The lines that doors close openings with, from wall to wall.
 
-    A leaf that stands open has a free end and does not count.
+    They are drawn as lines, or told by the swings of gates that are wider than what is closed
+    anyhow: from the hinge to where the leaf's tip is when it is shut, and from hinge to hinge where
+    two leaves meet. A leaf that stands open has a free end and does not count.
     """
-    lines = [
-        LineString((piece.start, piece.end))
-        for feature in doors
-        for path in feature.paths
-        for piece in path.pieces
-        if isinstance(piece, Line) and math.dist(piece.start, piece.end) > JAMB_MM
-    ]
+    pieces = [piece for feature in doors for path in feature.paths for piece in path.pieces]
+    ends = [(piece.start, piece.end) for piece in pieces if isinstance(piece, Line)]
+    ends += _by_swings([p for p in pieces if isinstance(p, Arc) and _swings(p)])
+    lines = [LineString(pair) for pair in ends if math.dist(*pair) > JAMB_MM]
     return [line for line, does in zip(lines, spanning(lines, walls, JAMB_MM), strict=True) if does]
+
+
+def _swings(arc: Arc) -> bool:
+    """Whether an arc is that of a door or, larger, of a gate."""
+    radius_mm = math.hypot(*arc.u)
+    return (
+        arc.is_round and LEAST_LEAF_MM <= radius_mm <= GATE_LEAF_MM and arc.sweep_rad <= WIDEST_RAD
+    )
+
+
+def _by_swings(arcs: Sequence[Arc]) -> list[tuple[Point, Point]]:
+    """Where leaves are shut, or open, one by one; and hinge to hinge of two whose tips meet."""
+    if not arcs:
+        return []
+    tips = [(arc.centre, tip) for arc in arcs for tip in (arc.start, arc.end)]
+    meeting = tree_of([tip for _, tip in tips]).query_pairs(LEAF_SLACK_MM)
+    shut = [*tips, *((tips[i][0], tips[j][0]) for i, j in sorted(meeting))]
+    return [ends for ends in shut if math.dist(*ends) > OPENING_MM]
 
 
 def spanning(

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 import shapely
-from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.groups import linked
@@ -26,6 +26,12 @@ OPENING_MM: Final = 2500.0
 OPENING_STEPS_MM: Final = (1000.0, 1500.0, 2000.0, OPENING_MM)
 """Openings are closed from narrow to wide, so that each is closed where it is narrowest."""
 
+GATE_STEPS_MM: Final = (4000.0, 6000.0, 8000.0)
+"""Gates of halls are so wide; closed where the walls lie beside what narrower openings leave."""
+
+LEFT_OUT: Final = 1 / 4
+"""Greatest share of the walls that may lie beside the floor: yards, sheds, a wall by itself."""
+
 FAR_MM: Final = 4 * OPENING_MM
 """Around all walls there is this much space that is outside."""
 
@@ -38,11 +44,30 @@ MAX_SAMPLES: Final = 200_000
 ON_LINE_MM: Final = 1e-3
 """A line this close to a wall runs along it."""
 
+NEXT_TO_MM: Final = 0.01
+"""What is this close to a wall is at it when openings are measured."""
+
 CRUMB_MM2: Final = 1.0
 """Faces smaller than this lie between lines that mean to be one."""
 
 DEEP: Final = 4.0
 """A space this many times as large as the square on its mouth is a passage, not a niche."""
+
+
+@dataclass(frozen=True, slots=True)
+class Enclosed:
+    """What walls enclose.
+
+    Attributes:
+        region: Along the walls' outer faces, corner by corner, and straight across each opening at
+            its narrowest place; empty where nothing is enclosed.
+        opening: The widest opening that is closed, from side to side; None where there is none.
+        left_out: Share of the walls, by the length of their lines, that is at no room in it.
+    """
+
+    region: Region
+    opening: LineString | None = None
+    left_out: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,17 +143,15 @@ class Mesh:
         return np.divide(dry_mm2, total_mm2, out=np.zeros(n), where=total_mm2 > 0)
 
 
-def enclosed(bounds: Sequence[BaseGeometry]) -> Region:
+def enclosed(bounds: Sequence[BaseGeometry], *, with_gates: bool = False) -> Enclosed:
     """What walls and lines enclose when openings of up to `OPENING_MM` are closed.
 
-    The result runs along the walls' outer faces, corner by corner, and straight across each
-    opening at its narrowest place. Walls that enclose nothing are left out.
+    Walls that enclose nothing are left out. Where these are many, wider openings may be closed, up
+    to the first width that leaves few.
 
     Args:
         bounds: Polygons and lines that bound the floor.
-
-    Returns:
-        The floor; empty where nothing is enclosed.
+        with_gates: Whether openings as wide as those of gates may be closed.
     """
     # Solids that overlap have one outline. Outlines of the same curve, divided in two ways, would
     # cross each other at every chord.
@@ -136,14 +159,30 @@ def enclosed(bounds: Sequence[BaseGeometry]) -> Region:
     lines = [bound for bound in bounds if not isinstance(bound, Polygon)]
     walls = shapely.union_all([filled.boundary, *lines], grid_size=SAME_MM)
     if walls.is_empty:
-        return MultiPolygon()
+        return Enclosed(MultiPolygon())
     samples = _samples(walls)
     if len(samples) < 3 or np.linalg.matrix_rank(samples - samples[0]) < 2:
-        return MultiPolygon()
+        return Enclosed(MultiPolygon())
     mesh = Mesh.over(samples)
-    found: BaseGeometry = Polygon()
+    found = _closed(mesh, walls, Polygon(), OPENING_STEPS_MM)
+    least = _of(found, walls, filled)
+    if not with_gates or least.left_out <= LEFT_OUT:
+        return least
+    for gate_mm in GATE_STEPS_MM:
+        found = _closed(mesh, walls, found, (gate_mm,))
+        wider = _of(found, walls, filled)
+        if wider.left_out <= LEFT_OUT:
+            return wider
+    return least
+
+
+def _closed(
+    mesh: Mesh, walls: BaseGeometry, found: BaseGeometry, openings_mm: Sequence[float]
+) -> BaseGeometry:
+    """What is enclosed when openings are closed from narrow to wide, with what was found before."""
     flooded: BoolArray | None = None
-    for opening_mm in OPENING_STEPS_MM:
+    walls = _with_rim(walls, found)
+    for opening_mm in openings_mm:
         outside = mesh.outside(opening_mm)
         if flooded is not None and (outside == flooded).all():
             # no opening lies between this width and the one before
@@ -152,9 +191,27 @@ def enclosed(bounds: Sequence[BaseGeometry]) -> Region:
         faces = _dry_faces(mesh, walls, found, outside)
         if faces:
             found = shapely.union_all([found, *faces])
-            # what lies within is settled
-            walls = shapely.union_all([*_beyond(found, shapely.get_parts(walls)), found.boundary])
-    return _with_rooms(found, filled)
+            walls = _with_rim(walls, found)
+    return found
+
+
+def _with_rim(walls: BaseGeometry, found: BaseGeometry) -> BaseGeometry:
+    """The walls and the rim of what they enclose; what lies within is settled."""
+    if found.is_empty:
+        return walls
+    return shapely.union_all([*_beyond(found, shapely.get_parts(walls)), found.boundary])
+
+
+def _of(found: BaseGeometry, walls: BaseGeometry, filled: BaseGeometry) -> Enclosed:
+    """What is to be known about what walls enclose."""
+    region, rooms = _with_rooms(found, filled)
+    if region.is_empty:
+        return Enclosed(region)
+    across = shapely.line_merge(region.boundary.difference(walls.buffer(NEXT_TO_MM)))
+    openings = [part for part in shapely.get_parts(across) if part.length > SAMPLE_MM]
+    widest = max(openings, key=lambda part: part.length, default=None)
+    beside = walls.difference(shapely.union_all(rooms).buffer(WALL_MM))
+    return Enclosed(region, widest, beside.length / walls.length)
 
 
 def _samples(walls: BaseGeometry) -> FloatArray:
@@ -216,13 +273,19 @@ def _is_niche(face: Polygon, seals: shapely.STRtree) -> bool:
     return face.area < DEEP * widest_mm**2 and is_thin(face, widest_mm)
 
 
-def _with_rooms(found: BaseGeometry, filled: BaseGeometry) -> Region:
-    """Whole outlines around what is enclosed; parts that are nothing but wall are left out."""
-    parts = [Polygon(part.exterior) for part in polygons_in([found])]
-    rooms = [
-        part
-        for part in parts
-        if not all(is_thin(space, WALL_MM) for space in polygons_in([part.difference(filled)]))
-    ]
+def _with_rooms(found: BaseGeometry, filled: BaseGeometry) -> tuple[Region, list[Polygon]]:
+    """Whole outlines around what is enclosed, and the rooms in them.
+
+    Parts that are nothing but wall are left out.
+    """
+    parts: list[Polygon] = []
+    rooms: list[Polygon] = []
+    for part in polygons_in([found]):
+        outline = Polygon(part.exterior)
+        spaces = polygons_in([outline.difference(filled)])
+        wide = [space for space in spaces if not is_thin(space, WALL_MM)]
+        if wide:
+            parts.append(outline)
+            rooms.extend(wide)
     # in one order of corners, whatever the order in which the walls were drawn
-    return tidy(shapely.normalize(shapely.union_all(rooms)))
+    return tidy(shapely.normalize(shapely.union_all(parts))), rooms

@@ -1,39 +1,47 @@
 """The floor: as drawn on its layer, or inferred from the walls around it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
-import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
-from satAOI_adapters.dxf_read.enclosure import OPENING_MM, enclosed
+from satAOI_adapters.dxf_read.curves import Point
+from satAOI_adapters.dxf_read.enclosure import OPENING_MM, Enclosed, enclosed
 from satAOI_adapters.dxf_read.features import Feature
-from satAOI_adapters.dxf_read.linework import Network, network
-from satAOI_adapters.dxf_read.obstacles import outlines_of
-from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
-from satAOI_adapters.dxf_read.shapes import even_odd, is_thin, middle_line, room, slivers, tidy
-from satAOI_adapters.dxf_read.terms import Terms
-from satAOI_geo.errors import DrawingError, EmptyPlanError
-from satAOI_geo.plan import (
-    Circle,
-    Finding,
-    Kind,
-    Obstacle,
-    Region,
-    as_region,
+from satAOI_adapters.dxf_read.floor_layers import (
+    Shown,
+    middle,
+    only_lines,
+    open_outline,
+    said,
+    shown_by,
 )
-
-MANY_TILES: Final = 20
-"""So many faces between loose lines of a floor layer are tiles, or panels of a slab."""
-
-TILES_WIDE: Final = 3.0
-"""A face in which a disc as wide as so many tiles fits is no tile: a pool, a void."""
+from satAOI_adapters.dxf_read.linework import WALL_MM
+from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
+from satAOI_adapters.dxf_read.shapes import TIE_MM, is_thin, tidy
+from satAOI_adapters.dxf_read.terms import Terms
+from satAOI_adapters.layers import without_xref_prefix
+from satAOI_geo.errors import EmptyPlanError
+from satAOI_geo.plan import Finding, Kind, Obstacle, Region, polygons_in
 
 BOUNDING: Final = frozenset({Kind.WALL, Kind.COLUMN})
 """Obstacles that an inferred floor reaches out to; a machine outdoors does not bound it."""
+
+
+PLAIN: Final = "FLOOR"
+"""A layer of this name shows the floor, however little it shows; findings ask for it."""
+
+MOST: Final = 2 / 3
+"""A layer that shows less of what walls enclose may show the finish of some rooms."""
+
+FEW: Final = 0.02
+"""Fewer of the walls may lie beside the floor in silence."""
+
+MIDST_MM: Final = 150.0
+"""An edge farther from walls than this lies in the midst of the floor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,11 +52,13 @@ class Floor:
         region: In the plan's frame.
         source: `layer` or `inferred`.
         findings: What is to be said about it.
+        others: What floor layers show that is not the floor, but things on it.
     """
 
     region: Region
     source: str
     findings: tuple[Finding, ...] = ()
+    others: tuple[Feature, ...] = ()
 
 
 def floor_of(
@@ -66,98 +76,101 @@ def floor_of(
         terms: The terms of the reading.
 
     Raises:
-        DrawingError: If the outline on a floor layer is not closed.
+        DrawingError: If the outline on a floor layer is not closed and no walls enclose a floor.
         EmptyPlanError: If there is nothing on a floor layer and nothing is enclosed by walls.
     """
-    floor = _drawn(drawn, obstacles, terms) if drawn else _inferred(obstacles, sills, terms)
+    bounds = [o.region() for o in obstacles if o.kind in BOUNDING]
+    shown = shown_by(drawn, obstacles, terms) if drawn else None
+    if shown is not None and _is_all(shown.region, bounds):
+        floor = Floor(shown.region, "layer", shown.findings)
+    else:
+        within = enclosed([*bounds, *sills], with_gates=terms.is_named)
+        floor = (
+            _inferred(within, obstacles, terms)
+            if shown is None
+            else _shown(shown, within, bounds, terms)
+        )
     if terms.region_mm is None:
         return floor
     region = tidy(floor.region.intersection(box(*terms.region_mm)))
     return replace(floor, region=region)
 
 
-def nested(polygons: Sequence[Polygon]) -> Region:
-    """Outlines of one layer as areas: one inside another is a hole in it, and so on inwards."""
-    area: BaseGeometry = Polygon()
-    for polygon in sorted(polygons, key=lambda outline: outline.area, reverse=True):
-        # what lies wholly in the area cuts a hole into it, anything else adds to it
-        cuts = polygon.area > 0 and area.buffer(CLOSE_GAPS_MM).contains(polygon)
-        area = area.difference(polygon) if cuts else area.union(polygon)
-    return as_region(area)
+def _is_all(region: Region, bounds: Sequence[BaseGeometry]) -> bool:
+    """Whether one outline leaves out no room: of the walls' hull no more than the walls."""
+    if not bounds or not isinstance(region, Polygon):
+        return False
+    rest = shapely.union_all(bounds).convex_hull.difference(region)
+    return rest.is_empty or is_thin(rest, WALL_MM)
 
 
-def _drawn(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], terms: Terms) -> Floor:
-    outlines: list[Polygon] = []
-    filled: list[BaseGeometry] = []
-    lines: list[LineString] = []
-    curved: list[Polygon] = []
-    for feature in drawn:
-        if feature.is_area:
-            filled.extend(_regions(feature))
-            continue
-        for path in feature.paths:
-            if path.closed:
-                outlines.extend(room(path))
-            else:
-                lines.append(middle_line(path))
-                curved.extend(slivers(path))
-    joined = network(lines, terms.gap_mm)
-    panels, left_out = _panels(joined, obstacles)
-    # chords reach over curves that bulge inwards
-    loops = shapely.union_all(panels).difference(shapely.union_all(curved))
-    region = as_region(shapely.union_all([nested(outlines), loops, *filled]))
-    if region.is_empty:
-        raise _open_outline(drawn[0], joined, terms)
-    neat = tidy(region)
+def _shown(shown: Shown, within: Enclosed, bounds: Sequence[BaseGeometry], terms: Terms) -> Floor:
+    """The floor that layers show, or what walls enclose where these layers show something else."""
+    if within.region.is_empty:
+        if shown.region.is_empty:
+            raise open_outline(shown, terms)
+        if is_thin(shown.region, WALL_MM):
+            raise only_lines(shown)
+        return Floor(shown.region, "layer", shown.findings)
+    free = within.region.difference(shapely.union_all(bounds))
+    if shown.region.intersection(free).area >= MOST * free.area:
+        return _with_doorways(shown, free, terms)
+    if _is_meant(shown, free, terms):
+        return Floor(shown.region, "layer", (*shown.findings, _in_part(shown, free, terms)))
     return Floor(
-        neat, "layer", (*_no_tiles(left_out, drawn[0]), *_joined_gaps(joined, drawn[0], terms))
+        within.region,
+        "inferred",
+        (_finish(shown, free, terms), *_of_openings(within, terms)),
+        others=shown.features,
     )
 
 
-def _regions(feature: Feature) -> list[BaseGeometry]:
-    return [
-        shape.polygon() if isinstance(shape, Circle) else shape
-        for shape in even_odd(feature.paths, outside=False)
-    ]
+def _is_meant(shown: Shown, free: BaseGeometry, terms: Terms) -> bool:
+    """Whether layers that show a part of what walls enclose show where the floor ends.
 
-
-def _panels(joined: Network, obstacles: Sequence[Obstacle]) -> tuple[list[Polygon], list[Polygon]]:
-    """What loose lines on a floor layer enclose: panels, and what tiles leave out.
-
-    Tiles end at walls: these close the faces along them.
+    They do where their name leaves no doubt, and where an outline has an edge in the midst of the
+    floor. What ends at walls and doors is the finish of some rooms; so is a pattern, and what is
+    small is something on the floor.
     """
-    faces = joined.faces()
-    if len(faces) < MANY_TILES:
-        return faces, []
-    widest_mm = TILES_WIDE * float(np.median([face.area for face in faces])) ** 0.5
-    walls = [
-        *outlines_of(obstacles),
-        *(o.shape for o in obstacles if isinstance(o.shape, LineString)),
+    names = {feature.placed.layer for feature in shown.features}
+    if not shown.region.is_empty and not terms.given_floors.isdisjoint(names):
+        return True
+    if PLAIN in {without_xref_prefix(name).upper() for name in names}:
+        return not is_thin(shown.region, WALL_MM)
+    if all(feature.is_area for feature in shown.features) or is_thin(shown.region, OPENING_MM):
+        return False
+    edges = shapely.line_merge(shown.region.boundary.intersection(free.buffer(-MIDST_MM)))
+    return bool(shapely.length(shapely.get_parts(edges)).max(initial=0.0) > OPENING_MM)
+
+
+def _with_doorways(shown: Shown, free: BaseGeometry, terms: Terms) -> Floor:
+    """The floor that layers show, with the doorways between the rooms that they show one by one."""
+    rooms = shapely.STRtree(polygons_in([shown.region]))
+    if len(rooms.geometries) < 2:
+        return Floor(shown.region, "layer", shown.findings)
+    gaps = polygons_in([free.difference(shown.region)])
+    joints = [
+        gap
+        for gap in gaps
+        if is_thin(gap, WALL_MM)
+        and rooms.query(gap, predicate="dwithin", distance=CLOSE_GAPS_MM).size > 1
     ]
-    joints = shapely.STRtree(joined.lines)
-    cut = network([*joined.lines, *walls]).faces()
-    near, _ = joints.query([f.boundary for f in cut], predicate="dwithin", distance=CLOSE_GAPS_MM)
-    faces = [cut[i] for i in np.unique(near)]
-    tiles = [face for face in faces if is_thin(face, widest_mm)]
-    return tiles, [face for face in faces if not is_thin(face, widest_mm)]
+    if not joints:
+        return Floor(shown.region, "layer", shown.findings)
+    whole = tidy(shapely.union_all([shown.region, *joints]))
+    return Floor(whole, "layer", (*shown.findings, _joined_rooms(joints, shown, terms)))
 
 
-def _inferred(obstacles: Sequence[Obstacle], sills: Sequence[LineString], terms: Terms) -> Floor:
-    region = enclosed([*(o.region() for o in obstacles if o.kind in BOUNDING), *sills])
-    if not region.is_empty:
-        area_m2 = region.area / 1e6
-        return Floor(
-            region,
-            "inferred",
-            (
-                Finding(
-                    "floor-inferred",
-                    f"no layer shows the floor: it is what the walls enclose, {area_m2:.2f} m² "
-                    f"with them, openings of up to {OPENING_MM / 1000:g} m closed",
-                    "draw its outline on a layer FLOOR",
-                ),
-            ),
+def _inferred(within: Enclosed, obstacles: Sequence[Obstacle], terms: Terms) -> Floor:
+    if not within.region.is_empty:
+        finding = Finding(
+            "floor-inferred",
+            "no layer shows the floor: it is what the walls enclose, "
+            f"{within.region.area / 1e6:.2f} m² with them, openings of up to "
+            f"{OPENING_MM / 1000:g} m closed",
+            "draw its outline on a layer FLOOR",
         )
+        return Floor(within.region, "inferred", (finding, *_of_openings(within, terms)))
     if terms.region_mm is not None:
         return Floor(box(*terms.region_mm), "inferred", (_of_region(),))
     if not terms.is_named:
@@ -167,6 +180,29 @@ def _inferred(obstacles: Sequence[Obstacle], sills: Sequence[LineString], terms:
             "its layer in a file for --layers, or give the part to read with --region"
         )
     return _guessed([o.region() for o in obstacles])
+
+
+def _of_openings(within: Enclosed, terms: Terms) -> Iterator[Finding]:
+    """What is to be said about walls and openings in them, where some are unusual."""
+    opening = within.opening
+    if opening is not None and opening.length > OPENING_MM + TIE_MM:
+        x_mm, y_mm = terms.place(opening.interpolate(0.5, normalized=True).coords[0])
+        yield Finding(
+            "wide-opening-closed",
+            f"many walls would lie beside the floor: openings wider than {OPENING_MM / 1000:g} m "
+            f"are closed, the widest of {opening.length / 1000:.2f} m at ({x_mm:.1f}, {y_mm:.1f}) "
+            "mm",
+            "draw a line across each opening on a layer GATE, or the floor's outline on a layer "
+            "FLOOR",
+            at_mm=(x_mm, y_mm),
+        )
+    if within.left_out > FEW:
+        yield Finding(
+            "walls-left-out",
+            f"{within.left_out:.0%} of the walls lie beside the floor that the others enclose",
+            "draw a line across openings wider than "
+            f"{OPENING_MM / 1000:g} m on a layer GATE, or the floor's outline on a layer FLOOR",
+        )
 
 
 def _of_region() -> Finding:
@@ -201,51 +237,46 @@ def _guessed(regions: Sequence[BaseGeometry]) -> Floor:
     )
 
 
-def _open_outline(feature: Feature, joined: Network, terms: Terms) -> DrawingError:
-    placed = feature.placed
-    ends = [end for end, _ in joined.loose]
-    if len(ends) < 2:
-        return DrawingError(
-            f"layer '{placed.layer}' should show the floor's outline, but encloses nothing; "
-            "draw it as a closed polyline",
-            layer=placed.layer,
-            handle=placed.handle,
-        )
-    start_mm, end_mm = terms.frame.to_drawing_mm(ends[:2])
-    gap_mm = float(np.hypot(*(end_mm - start_mm)))
-    return DrawingError(
-        f"the floor's outline on layer '{placed.layer}' is open: its ends at ({start_mm[0]:.1f}, "
-        f"{start_mm[1]:.1f}) and ({end_mm[0]:.1f}, {end_mm[1]:.1f}) mm are {gap_mm:.1f} mm apart; "
-        "close it in the drawing",
-        layer=placed.layer,
-        handle=placed.handle,
-        at_mm=(float(start_mm[0]), float(start_mm[1])),
+def _shares(shown: Shown, free: BaseGeometry) -> str:
+    covered_m2 = shown.region.intersection(free).area / 1e6
+    return (
+        f"{shown.layers} shows {covered_m2:.2f} of the {free.area / 1e6:.2f} m² that walls enclose"
     )
 
 
-def _no_tiles(left_out: Sequence[Polygon], feature: Feature) -> tuple[Finding, ...]:
-    if not left_out:
-        return ()
-    area_m2 = sum(face.area for face in left_out) / 1e6
-    return (
-        Finding(
-            "floor-without-tiles",
-            f"{len(left_out)} spaces between the tiles of layer '{feature.placed.layer}', "
-            f"{area_m2:.2f} m² together, are much larger than a tile and taken as no floor",
-            "draw the floor's outline as a closed polyline on a layer FLOOR",
-            layer=feature.placed.layer,
-        ),
+def _rest(shown: Shown, free: BaseGeometry) -> Point:
+    """A point in the largest part of what layers do not show."""
+    return middle(max(polygons_in([free.difference(shown.region)]), key=lambda part: part.area))
+
+
+def _in_part(shown: Shown, free: BaseGeometry, terms: Terms) -> Finding:
+    return said(
+        "floor-in-part",
+        f"{_shares(shown, free)}: the rest is taken as no floor",
+        "draw the outline of all of it on a layer FLOOR if the robot is to trowel the rest, too",
+        shown,
+        terms.place(_rest(shown, free)),
     )
 
 
-def _joined_gaps(joined: Network, feature: Feature, terms: Terms) -> tuple[Finding, ...]:
-    if not joined.n_joined:
-        return ()
-    return (
-        Finding(
-            "gap-closed",
-            f"{joined.n_joined} line ends of the floor's outline were joined over gaps of up to "
-            f"{terms.gap_mm:g} mm",
-            layer=feature.placed.layer,
-        ),
+def _finish(shown: Shown, free: BaseGeometry, terms: Terms) -> Finding:
+    return said(
+        "floor-not-shown",
+        f"{_shares(shown, free)}, as finishes of single rooms and edges of steps do: the floor is "
+        "taken as all that walls enclose",
+        "draw the floor's outline on a layer FLOOR, or say in a file for --layers that the layer "
+        "is the floor, if it ends there",
+        shown,
+        terms.place(shown.features[0].paths[0].start),
+    )
+
+
+def _joined_rooms(joints: Sequence[Polygon], shown: Shown, terms: Terms) -> Finding:
+    return said(
+        "doorways-joined",
+        f"{shown.layers} shows the floor room by room: {len(joints)} doorways between the rooms, "
+        f"{sum(joint.area for joint in joints) / 1e6:.2f} m² together, are taken as floor",
+        "draw the floor's outline on a layer FLOOR if the rooms are apart",
+        shown,
+        terms.place(middle(joints[0])),
     )

@@ -187,7 +187,7 @@ def _inferred(site: Site, standing: Sequence[Standing], height_mm: float) -> Reg
     # walls that meet do so up to their rounding: a hair's breadth must not open a room
     solid = closing(shapely.union_all(polygons_in(parts)), HAIR_MM)
     lines = [part for part in parts if isinstance(part, LineString)]
-    floor = enclosed([*polygons_in([solid]), *lines])
+    floor = enclosed([*polygons_in([solid]), *lines]).region
     if floor.is_empty:
         raise EmptyPlanError(
             f"there is no slab, space or other level surface at {height_mm:g} mm, and the walls "

@@ -1,0 +1,244 @@
+"""The floor of a drawing: what its layers show of it, held against what the walls enclose."""
+
+import math
+from pathlib import Path
+
+import pytest
+import shapely
+from ezdxf.document import Drawing
+from ezdxf.layouts import Modelspace
+from shapely.geometry import Polygon, box
+
+from satAOI_geo.errors import DrawingError
+from satAOI_geo.plan import Finding, FloorPlan
+from tests.drawings import codes, drawing, plan_of, rectangle, standing
+
+HALL = box(-200, -200, 20_200, 10_200)
+OFFICE = box(0, 6000, 5100, 10_000)
+
+
+def hall(*, gate_mm: float) -> Drawing:
+    """A hall of 20 × 10 m with an opening in its right wall, and a closed office in a corner."""
+    document = drawing(floor=False)
+    space = document.modelspace()
+    low, high = 5000 - gate_mm / 2, 5000 + gate_mm / 2
+    for x0, y0, x1, y1 in (
+        (-200, -200, 0, 10_200),
+        (-200, -200, 20_200, 0),
+        (-200, 10_000, 20_200, 10_200),
+        (20_000, 0, 20_200, low),
+        (20_000, high, 20_200, 10_000),
+        (0, 6000, 5100, 6100),
+        (5000, 6000, 5100, 10_000),
+    ):
+        rectangle(space, x0, y0, x1, y1, layer="WALL")
+    return document
+
+
+def rooms() -> Drawing:
+    """Two rooms of 6 × 6 m with an opening of 950 mm in the wall of 120 mm between them."""
+    document = drawing(floor=False)
+    space = document.modelspace()
+    rectangle(space, -200, -200, 12_320, 6200, layer="WALL")
+    inner = [(0, 0), (6000, 0), (6000, 2000), (6120, 2000), (6120, 0), (12_120, 0)]
+    inner += [(12_120, 6000), (6120, 6000), (6120, 2950), (6000, 2950), (6000, 6000), (0, 6000)]
+    space.add_lwpolyline(inner, close=True, dxfattribs={"layer": "WALL"})
+    return document
+
+
+ALL_ROOMS = box(-200, -200, 12_320, 6200)
+DOORWAY = box(6000, 2000, 6120, 2950)
+
+
+def pattern(space: Modelspace, x0: float, y0: float, x1: float, y1: float, *, layer: str) -> None:
+    """A rectangle of tiles."""
+    hatch = space.add_hatch(dxfattribs={"layer": layer})
+    hatch.set_pattern_fill("ANSI37", scale=300)
+    hatch.paths.add_polyline_path([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], is_closed=True)
+
+
+def floor_of(plan: FloorPlan) -> shapely.Geometry:
+    """The floor in the drawing's axes."""
+    return shapely.affinity.translate(plan.floor, *plan.frame.origin_mm)
+
+
+def free_m2(plan: FloorPlan) -> float:
+    """Floor on which nothing stands."""
+    return float(plan.floor.difference(plan.obstacle_region()).area) / 1e6
+
+
+def said(plan: FloorPlan, code: str) -> Finding:
+    """The one finding of a code."""
+    (finding,) = (finding for finding in plan.findings if finding.code == code)
+    return finding
+
+
+@pytest.mark.parametrize("gate_mm", [3000.0, 4000.0, 6000.0])
+def test_gate_is_closed_where_most_walls_would_lie_beside_the_floor(
+    gate_mm: float, tmp_path: Path
+) -> None:
+    plan = plan_of(hall(gate_mm=gate_mm), tmp_path)
+    assert floor_of(plan).equals(HALL)
+    finding = said(plan, "wide-opening-closed")
+    assert f"{gate_mm / 1000:.2f} m" in finding.message
+    assert finding.at_mm is not None
+    assert abs(finding.at_mm[1] - 5000) < 1
+
+
+def test_walls_beside_the_floor_are_said_where_no_gate_closes_it(tmp_path: Path) -> None:
+    plan = plan_of(hall(gate_mm=9000.0), tmp_path)
+    assert shapely.intersection(floor_of(plan), OFFICE.buffer(-200)).area > 0
+    assert free_m2(plan) < 20
+    assert "wide-opening-closed" not in codes(plan)
+    assert "% of the walls" in said(plan, "walls-left-out").message
+
+
+def test_wall_in_the_yard_widens_no_opening(tmp_path: Path) -> None:
+    document = rooms()
+    # it goes on from a corner of the rooms
+    rectangle(document.modelspace(), -200, -5200, 0, -200, layer="WALL")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(ALL_ROOMS.union(box(-200, -5200, 0, -200)))
+    assert "walls-left-out" in codes(plan)
+    assert "wide-opening-closed" not in codes(plan)
+
+
+@pytest.mark.parametrize("turn_deg", [90.0, 70.0])
+def test_leaves_of_a_gate_close_it_from_hinge_to_hinge(turn_deg: float, tmp_path: Path) -> None:
+    document = hall(gate_mm=7000.0)
+    space = document.modelspace()
+    for y, start, end in ((1500, 90 - turn_deg, 90), (8500, -90, turn_deg - 90)):
+        space.add_arc((20_100, y), 3500, start, end, dxfattribs={"layer": "DOOR"})
+        tip = start if y == 1500 else end
+        way = math.cos(math.radians(tip)), math.sin(math.radians(tip))
+        open_tip = (20_100 + 3500 * way[0], y + 3500 * way[1])
+        space.add_line((20_100, y), open_tip, dxfattribs={"layer": "DOOR"})
+    plan = plan_of(document, tmp_path)
+    # the leaves are drawn in the middle of the wall, and nothing is guessed
+    assert floor_of(plan).equals(HALL.difference(box(20_100, 1500, 20_200, 8500)))
+    assert "wide-opening-closed" not in codes(plan)
+
+
+def test_leaf_of_a_gate_closes_it_from_its_hinge_to_its_tip(tmp_path: Path) -> None:
+    document = hall(gate_mm=3500.0)
+    space = document.modelspace()
+    space.add_arc((20_100, 3250), 3500, 0, 90, dxfattribs={"layer": "DOOR"})
+    space.add_line((20_100, 3250), (23_600, 3250), dxfattribs={"layer": "DOOR"})
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(HALL.difference(box(20_100, 3250, 20_200, 6750)))
+    assert "wide-opening-closed" not in codes(plan)
+
+
+@pytest.mark.parametrize("layer", ["FLOORING", "FLOOR FINISH", "A-FLOR"])
+def test_tiles_of_one_room_are_not_the_whole_floor(layer: str, tmp_path: Path) -> None:
+    document = rooms()
+    pattern(document.modelspace(), 6120, 0, 12_120, 6000, layer=layer)
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(ALL_ROOMS)
+    assert free_m2(plan) == pytest.approx(72.114)
+    finding = said(plan, "floor-not-shown")
+    assert (finding.layer, bool(finding.handle)) == (layer, True)
+    assert "36.00 of the 72.11 m²" in finding.message
+
+
+def test_outline_of_one_room_is_not_the_whole_floor(tmp_path: Path) -> None:
+    document = rooms()
+    rectangle(document.modelspace(), 6120, 0, 12_120, 6000, layer="A-FLOR")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(ALL_ROOMS)
+    assert free_m2(plan) == pytest.approx(72.114)
+
+
+def test_balcony_on_a_floor_layer_is_not_the_floor_inside(tmp_path: Path) -> None:
+    document = rooms()
+    rectangle(document.modelspace(), 2000, 6200, 5000, 7700, layer="A-FLOR")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(ALL_ROOMS)
+    assert "0.00 of the 72.11 m²" in said(plan, "floor-not-shown").message
+
+
+def test_step_drawn_on_a_floor_layer_that_is_not_believed_stops_the_robot(tmp_path: Path) -> None:
+    document = rooms()
+    rectangle(document.modelspace(), 2000, 2000, 4000, 3200, layer="A-FLOR")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(ALL_ROOMS)
+    assert standing(plan, "A-FLOR")
+    assert free_m2(plan) == pytest.approx(72.114 - 2.4)
+
+
+@pytest.mark.parametrize("layer", ["FLOOR", "A-FLOR", "S-SLAB"])
+def test_edge_in_the_midst_of_the_floor_is_where_it_ends(layer: str, tmp_path: Path) -> None:
+    document = rooms()
+    rectangle(document.modelspace(), 0, 0, 4000, 6000, layer=layer)
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(0, 0, 4000, 6000))
+    finding = said(plan, "floor-in-part")
+    assert "24.00 of the 72.11 m²" in finding.message
+    assert plan.floor_source == "layer"
+
+
+def test_room_on_the_layer_that_findings_ask_for_is_the_floor(tmp_path: Path) -> None:
+    document = rooms()
+    rectangle(document.modelspace(), 6120, 0, 12_120, 6000, layer="Floor")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(6120, 0, 12_120, 6000))
+    assert "floor-in-part" in codes(plan)
+
+
+def test_room_on_a_layer_that_the_user_names_is_the_floor(tmp_path: Path) -> None:
+    document = rooms()
+    pattern(document.modelspace(), 6120, 0, 12_120, 6000, layer="FLOORING")
+    own = tmp_path / "layers.toml"
+    own.write_text('[layers]\nfloor = ["FLOORING"]\n', encoding="utf-8")
+    plan = plan_of(document, tmp_path, layers=own)
+    assert floor_of(plan).equals(box(6120, 0, 12_120, 6000))
+    assert "floor-in-part" in codes(plan)
+
+
+def test_floor_larger_than_what_walls_enclose_stays_as_it_is_drawn(tmp_path: Path) -> None:
+    document = rooms()
+    rectangle(document.modelspace(), -3000, -3000, 20_000, 12_000, layer="SLAB")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(-3000, -3000, 20_000, 12_000))
+    assert not {"floor-in-part", "floor-not-shown"} & set(codes(plan))
+
+
+def test_rooms_tiled_one_by_one_are_joined_by_their_doorway(tmp_path: Path) -> None:
+    document = rooms()
+    pattern(document.modelspace(), 0, 0, 6000, 6000, layer="FLOORING")
+    pattern(document.modelspace(), 6120, 0, 12_120, 6000, layer="FLOORING")
+    plan = plan_of(document, tmp_path)
+    whole = shapely.union_all([box(0, 0, 6000, 6000), DOORWAY, box(6120, 0, 12_120, 6000)])
+    assert floor_of(plan).equals(whole)
+    assert "1 doorways" in said(plan, "doorways-joined").message
+
+
+def test_threshold_on_a_floor_layer_does_not_hide_the_floor(tmp_path: Path) -> None:
+    document = rooms()
+    document.modelspace().add_line((6000, 2000), (6000, 2950), dxfattribs={"layer": "A-FLOR"})
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(ALL_ROOMS)
+    finding = said(plan, "floor-not-shown")
+    assert finding.at_mm == (6000.0, 2000.0)
+    assert "--layers" in finding.remedy
+
+
+def test_lines_of_a_plan_on_a_layer_of_floors_are_refused(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    rectangle(document.modelspace(), 0, 0, 10_000, 300, layer="SLAB")
+    with pytest.raises(DrawingError, match="wider than 700 mm"):
+        plan_of(document, tmp_path)
+
+
+@pytest.mark.parametrize("layer", ["SLAB", "S-SLAB-DEPR"])
+def test_outline_within_that_of_the_floor_is_cut_out_and_said(layer: str, tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    rectangle(document.modelspace(), 0, 0, 10_000, 8000, layer="SLAB")
+    rectangle(document.modelspace(), 2000, 2000, 4000, 4000, layer=layer)
+    plan = plan_of(document, tmp_path)
+    shell, hole = [(0, 0), (10_000, 0), (10_000, 8000), (0, 8000)], box(2000, 2000, 4000, 4000)
+    assert floor_of(plan).equals(Polygon(shell).difference(hole))
+    finding = said(plan, "floor-hole")
+    assert "4.00 m²" in finding.message
+    assert finding.at_mm is not None
+    assert hole.contains(shapely.Point(finding.at_mm))
