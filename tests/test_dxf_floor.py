@@ -213,6 +213,27 @@ def test_rooms_tiled_one_by_one_are_joined_by_their_doorway(tmp_path: Path) -> N
     assert "1 doorways" in said(plan, "doorways-joined").message
 
 
+def test_room_that_a_layer_of_floors_leaves_out_is_said_with_its_place(tmp_path: Path) -> None:
+    document = rooms()
+    rectangle(document.modelspace(), 0, 4000, 2000, 4100, layer="WALL")
+    rectangle(document.modelspace(), 1900, 4100, 2000, 6000, layer="WALL")
+    corners = [(0, 0), (12_120, 0), (12_120, 6000), (2000, 6000), (2000, 4000), (0, 4000)]
+    document.modelspace().add_lwpolyline(corners, close=True, dxfattribs={"layer": "SLAB"})
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(Polygon(corners))
+    at_mm = said(plan, "floor-in-part").at_mm
+    assert at_mm is not None
+    assert box(0, 4100, 1900, 6000).contains(shapely.Point(at_mm))
+
+
+def test_outline_drawn_twice_is_the_floor(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 0, 0, 10_000, 10_000, layer="FLOOR")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(0, 0, 10_000, 10_000))
+    assert "floor-hole" not in codes(plan)
+
+
 def test_threshold_on_a_floor_layer_does_not_hide_the_floor(tmp_path: Path) -> None:
     document = rooms()
     document.modelspace().add_line((6000, 2000), (6000, 2950), dxfattribs={"layer": "A-FLOR"})

@@ -8,7 +8,6 @@ import shapely
 from shapely.geometry import LineString, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
-from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.enclosure import OPENING_MM, Enclosed, enclosed
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.floor_layers import (
@@ -36,6 +35,9 @@ PLAIN: Final = "FLOOR"
 
 MOST: Final = 2 / 3
 """A layer that shows less of what walls enclose may show the finish of some rooms."""
+
+ROOM_MM: Final = 1000.0
+"""What walls enclose and no layer shows is said where it is wider than this."""
 
 FEW: Final = 0.02
 """Fewer of the walls may lie beside the floor in silence."""
@@ -113,10 +115,10 @@ def _shown(shown: Shown, within: Enclosed, bounds: Sequence[BaseGeometry], terms
             raise only_lines(shown)
         return Floor(shown.region, "layer", shown.findings)
     free = within.region.difference(shapely.union_all(bounds))
-    if shown.region.intersection(free).area >= MOST * free.area:
-        return _with_doorways(shown, free, terms)
-    if _is_meant(shown, free, terms):
-        return Floor(shown.region, "layer", (*shown.findings, _in_part(shown, free, terms)))
+    covers_most = shown.region.intersection(free).area >= MOST * free.area
+    if covers_most or _is_meant(shown, free, terms):
+        floor = _with_doorways(shown, free, terms)
+        return replace(floor, findings=(*floor.findings, *_in_part(shown, free, terms)))
     return Floor(
         within.region,
         "inferred",
@@ -244,19 +246,18 @@ def _shares(shown: Shown, free: BaseGeometry) -> str:
     )
 
 
-def _rest(shown: Shown, free: BaseGeometry) -> Point:
-    """A point in the largest part of what layers do not show."""
-    return middle(max(polygons_in([free.difference(shown.region)]), key=lambda part: part.area))
-
-
-def _in_part(shown: Shown, free: BaseGeometry, terms: Terms) -> Finding:
-    return said(
-        "floor-in-part",
-        f"{_shares(shown, free)}: the rest is taken as no floor",
-        "draw the outline of all of it on a layer FLOOR if the robot is to trowel the rest, too",
-        shown,
-        terms.place(_rest(shown, free)),
-    )
+def _in_part(shown: Shown, free: BaseGeometry, terms: Terms) -> Iterator[Finding]:
+    rest = polygons_in([free.difference(shown.region)])
+    rooms = [part for part in rest if not is_thin(part, ROOM_MM)]
+    if rooms:
+        yield said(
+            "floor-in-part",
+            f"{_shares(shown, free)}: the rest is taken as no floor",
+            "draw the outline of all of it on a layer FLOOR if the robot is to trowel the rest, "
+            "too",
+            shown,
+            terms.place(middle(max(rooms, key=lambda part: part.area))),
+        )
 
 
 def _finish(shown: Shown, free: BaseGeometry, terms: Terms) -> Finding:

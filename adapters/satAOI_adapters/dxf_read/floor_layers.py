@@ -64,8 +64,12 @@ def nested(polygons: Sequence[Polygon]) -> tuple[Region, list[Polygon]]:
         The areas, and the outlines that cut holes.
     """
     area: BaseGeometry = Polygon()
+    drawn: list[Polygon] = []
     holes: list[Polygon] = []
     for polygon in sorted(polygons, key=lambda outline: outline.area, reverse=True):
+        if any(_is_copy(polygon, other) for other in drawn):
+            continue
+        drawn.append(polygon)
         # what lies wholly in the area cuts a hole into it, anything else adds to it
         if polygon.area > 0 and area.buffer(CLOSE_GAPS_MM).contains(polygon):
             area = area.difference(polygon)
@@ -73,6 +77,12 @@ def nested(polygons: Sequence[Polygon]) -> tuple[Region, list[Polygon]]:
         else:
             area = area.union(polygon)
     return as_region(area), holes
+
+
+def _is_copy(polygon: Polygon, other: Polygon) -> bool:
+    """Whether two outlines, of which the other is the larger, are drawn one over the other."""
+    is_as_large = other.area - polygon.area <= other.length * CLOSE_GAPS_MM
+    return is_as_large and bool(polygon.buffer(CLOSE_GAPS_MM).contains(other))
 
 
 def shown_by(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], terms: Terms) -> Shown:
