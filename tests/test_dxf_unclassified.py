@@ -1,13 +1,18 @@
-"""Closed shapes on layers that nobody named: rooms, openings, lines of a pen, dashed outlines."""
+"""Shapes on layers that nobody named: rooms, openings, broad lines, dashed outlines, clouds."""
 
+import math
+import random
 from pathlib import Path
 
+import numpy as np
 import pytest
+from ezdxf import transform
 from ezdxf.document import Drawing
+from ezdxf.math import Matrix44
 from shapely.geometry import box
 
 from satAOI_geo.plan import FloorPlan, Kind
-from tests.drawings import codes, drawing, plan_of, rectangle, standing
+from tests.drawings import M, codes, drawing, plan_of, rectangle, standing
 
 DASHES = [0.375, 0.25, -0.125]
 
@@ -167,6 +172,8 @@ def test_arrow_of_a_tapered_line_is_one_open_line(tmp_path: Path) -> None:
     plan = plan_of(document, tmp_path)
     assert standing(plan, "XYZ") == []
     (finding,) = [f for f in plan.findings if f.code == "unclassified-left-out"]
+    assert finding.handle
+    assert finding.at_mm is not None
     assert finding.message.startswith("1 open lines on layer 'XYZ'")
 
 
@@ -224,6 +231,82 @@ def test_fill_is_an_obstacle_whatever_its_linetype(tmp_path: Path) -> None:
     on = {"layer": "XYZ", "linetype": "HIDDEN"}
     document.modelspace().add_solid([SQUARE[0], SQUARE[1], SQUARE[3], SQUARE[2]], on)
     assert len(standing(plan_of(document, tmp_path), "XYZ")) == 1
+
+
+def with_bows(document: Drawing, n_bows: int, bulge: float) -> None:
+    """A closed outline of equal bows around a square."""
+    per_side = n_bows // 4
+    corners = [
+        (x0 + (x1 - x0) * k / per_side, y0 + (y1 - y0) * k / per_side, bulge)
+        for (x0, y0), (x1, y1) in zip(SQUARE, [*SQUARE[1:], SQUARE[0]], strict=True)
+        for k in range(per_side)
+    ]
+    on = {"layer": "XYZ"}
+    document.modelspace().add_lwpolyline(corners, format="xyb", close=True, dxfattribs=on)
+
+
+def test_revision_cloud_is_left_out_and_said(tmp_path: Path) -> None:
+    document = hall()
+    with_bows(document, 16, 0.5)
+    plan = plan_of(document, tmp_path)
+    assert standing(plan, "XYZ") == []
+    assert said(plan, "revision-cloud") == ["XYZ"]
+
+
+@pytest.mark.parametrize(("n_bows", "bulge"), [(16, -0.5), (4, 1.0), (16, 0.05)])
+def test_flutes_piers_and_rounded_outlines_are_no_revision_clouds(
+    n_bows: int, bulge: float, tmp_path: Path
+) -> None:
+    document = hall()
+    with_bows(document, n_bows, bulge)
+    assert len(standing(plan_of(document, tmp_path), "XYZ")) == 1
+
+
+def test_outline_drawn_in_many_arcs_of_a_circle_is_an_obstacle(tmp_path: Path) -> None:
+    document = hall()
+    corners = [(1000 * math.cos(k), 1000 * math.sin(k)) for k in np.arange(16) * math.tau / 16]
+    document.modelspace().add_lwpolyline(
+        [(5000 + x, 5000 + y, math.tan(math.tau / 64)) for x, y in corners],
+        format="xyb",
+        close=True,
+        dxfattribs={"layer": "XYZ"},
+    )
+    assert len(standing(plan_of(document, tmp_path), "XYZ")) == 1
+
+
+def everything() -> Drawing:
+    """Of each sort of shape one."""
+    document = hall()
+    with_bows(document, 16, 0.5)
+    for x, y, layer in ((0, 0, "A"), (8000, 2000, "A"), (0, 8000, "B")):
+        rectangle(document.modelspace(), x, y, x + 1900, y + 1800, layer=f"XYZ-{layer}")
+    for outline in document.modelspace().query("*[layer=='XYZ-B']"):
+        outline.dxf.linetype = "HIDDEN"
+    shaft = [(8000, 8000), (10_000, 8000), (10_000, 10_000), (8000, 10_000)]
+    add_lines(document, *zip(shaft, [*shaft[1:], shaft[0]], strict=True), layer="XYZ-C")
+    add_lines(document, (shaft[0], shaft[2]), (shaft[1], shaft[3]), layer="XYZ-C")
+    return document
+
+
+@pytest.mark.parametrize("way", ["turned", "mirrored", "shuffled", "in metres"])
+def test_drawing_changed_in_some_way_shows_the_same_shapes(way: str, tmp_path: Path) -> None:
+    plan = plan_of(everything(), tmp_path)
+    document = everything()
+    space = document.modelspace()
+    if way == "turned":
+        transform.inplace(space, Matrix44.z_rotate(math.radians(30)))
+    elif way == "mirrored":
+        transform.inplace(space, Matrix44.scale(-1, 1, 1))
+    elif way == "shuffled":
+        random.Random(1).shuffle(space.entity_space.entities)
+    else:
+        transform.inplace(space, Matrix44.scale(0.001, 0.001, 0.001))
+        document.header["$INSUNITS"] = M
+    other = plan_of(document, tmp_path)
+    sorts = {"crossed", "dashed", "revision-cloud", "unclassified"}
+    assert {code for code in codes(plan) if code in sorts} == sorts
+    assert sorted(codes(other)) == sorted(codes(plan))
+    assert other.free_region().area == pytest.approx(plan.free_region().area, rel=1e-9)
 
 
 def test_obstacle_without_a_name_is_said_with_handle_and_place(tmp_path: Path) -> None:

@@ -1,14 +1,17 @@
 """What stands on the floor on layers whose names say nothing: obstacles, on the safe side."""
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
+import numpy as np
 import shapely
 from ezdxf.entities import LWPolyline, Polyline
 from shapely.geometry import LineString
+from shapely.geometry.base import BaseGeometry
 
+from satAOI_adapters.dxf_read.clouds import is_cloud
 from satAOI_adapters.dxf_read.crossed import crossed
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.loops import Loop, loops
@@ -26,6 +29,34 @@ WHOLE: Final = 0.9
 """An outline around this share of the floor is a frame, not a thing on it."""
 
 SAY_WHAT: Final = "say what the layer is in a file for --layers"
+
+NAMELESS, CROSSED, ROOM = "unclassified", "crossed", "room-outline"
+DASHED, CLOUD = "dashed", "revision-cloud"
+"""What closed shapes are taken for, as findings call it."""
+
+SAID: Final = {
+    NAMELESS: (
+        "closed shapes {where}, are taken as obstacles: the layer's name says nothing",
+        SAY_WHAT,
+    ),
+    CROSSED: (
+        "rectangles {where}, are crossed by their diagonals, as openings are: they are obstacles",
+        SAY_WHAT,
+    ),
+    ROOM: (
+        "closed outlines {where}, run along walls or each other: they are rooms, not obstacles",
+        f"{SAY_WHAT} if one of them is a pit or stops the robot",
+    ),
+    DASHED: (
+        "closed outlines {where}, are dashed, as things overhead or underground: they are left out",
+        "draw them continuous, or name the layer in a file for --layers, if they stop the robot",
+    ),
+    CLOUD: (
+        "outlines of bows {where}, are taken as revision clouds and left out",
+        f"{SAY_WHAT} if they stop the robot",
+    ),
+}
+"""What is said of each sort of shape, and what the user can do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,12 +86,18 @@ class Thing:
         shared_mm2 = floor.intersection(region).area
         return bool(0 < shared_mm2 < WHOLE * floor.area)
 
-    def is_dashed(self, dashed: frozenset[int]) -> bool:
-        """Whether all of its outline is dashed; a fill never is."""
-        return all(
-            id(feature.placed) in dashed and not feature.is_area and not feature.width_mm
-            for feature in self.features
-        )
+    def sort(self, dashed: frozenset[int]) -> str:
+        """What it is taken for by its own look; a fill or a broad line is never more than a shape.
+
+        Args:
+            dashed: Identities of what is placed and dashed.
+        """
+        if any(feature.is_area or feature.width_mm for feature in self.features):
+            return NAMELESS
+        if all(id(feature.placed) in dashed for feature in self.features):
+            return DASHED
+        is_bowed = all(is_cloud(path) for feature in self.features for path in feature.paths)
+        return CLOUD if is_bowed else NAMELESS
 
 
 def unclassified(
@@ -72,8 +109,8 @@ def unclassified(
 ) -> Standing:
     """Closed shapes on layers without a meaning, as far as they are on the floor.
 
-    Patterns are left out, and so are outlines that are dashed or those of rooms. What is crossed
-    by its diagonals is an opening, whatever it runs along.
+    Patterns are left out, and so are revision clouds and outlines that are dashed or those of
+    rooms. What is crossed by its diagonals is an opening, whatever it runs along.
 
     Args:
         features: What is drawn on these layers.
@@ -91,50 +128,18 @@ def unclassified(
     closed = [*(thing for feature in drawn for thing in _closed(feature)), *map(Thing.of, outlines)]
     on_floor = [thing for thing in closed if thing.is_on(floor)]
     openings = [Thing.of(cross).obstacle for cross in crosses]
-    others = _beside(openings, on_floor)
-    above = [thing.obstacle for thing in others if thing.is_dashed(dashed)]
-    things = [thing.obstacle for thing in others if not thing.is_dashed(dashed)]
+    sorts: defaultdict[str, list[Obstacle]] = defaultdict(list)
+    for thing in _beside(openings, on_floor):
+        sorts[thing.sort(dashed)].append(thing.obstacle)
+    things = sorts.pop(NAMELESS, [])
     rooms = rooms_among(things, known)
     standing = [thing for i, thing in enumerate(things) if i not in rooms]
     in_outlines = {id(feature) for outline in outlines for feature in outline.features}
     loose = [feature for feature in drawn if id(feature) not in in_outlines and _is_open(feature)]
-    findings = [
-        *_found(
-            "unclassified",
-            standing,
-            "{count} closed shapes on layer '{layer}', {area:.2f} m² together, are taken as "
-            "obstacles: the layer's name says nothing",
-            SAY_WHAT,
-            frame,
-        ),
-        *_found(
-            "crossed",
-            openings,
-            "{count} rectangles on layer '{layer}', {area:.2f} m² together, are crossed by their "
-            "diagonals, as openings are: they are taken as obstacles",
-            SAY_WHAT,
-            frame,
-        ),
-        *_found(
-            "room-outline",
-            [things[i] for i in sorted(rooms)],
-            "{count} closed outlines on layer '{layer}', {area:.2f} m² together, run along walls "
-            "or each other and are taken as rooms, not as obstacles",
-            f"{SAY_WHAT} if one of them is a pit or stops the robot",
-            frame,
-        ),
-        *_found(
-            "dashed",
-            above,
-            "{count} closed outlines on layer '{layer}', {area:.2f} m² together, are dashed, as "
-            "things above the cut or under the floor are drawn: they are left out",
-            "draw them continuous, or name the layer in a file for --layers, if they stop the "
-            "robot",
-            frame,
-        ),
-        *_left_out(loose, floor),
-    ]
-    return Standing((*standing, *openings), tuple(findings))
+    sorts |= {NAMELESS: standing, CROSSED: openings, ROOM: [things[i] for i in sorted(rooms)]}
+    found = [finding for code in SAID for finding in _found(code, sorts[code], frame)]
+    findings = (*found, *_left_out(loose, floor, frame))
+    return Standing((*standing, *openings), findings)
 
 
 def _without_pen(feature: Feature) -> Feature:
@@ -165,25 +170,29 @@ def _is_open(feature: Feature) -> bool:
     return not feature.width_mm and not all(path.closed for path in feature.paths)
 
 
-def _left_out(loose: Sequence[Feature], floor: Region) -> list[Finding]:
+def _left_out(loose: Sequence[Feature], floor: Region, frame: Frame) -> list[Finding]:
     """What is to be said about lines and patterns, as far as they reach the floor."""
-    on_floor = shapely.intersects(floor, rough_lines(loose))
-    reaching = [feature for feature, does in zip(loose, on_floor, strict=True) if does]
-    entities = {id(feature.placed): feature for feature in reaching}.values()
-    lines: Counter[str] = Counter()
-    patterns: Counter[str] = Counter()
-    for feature in entities:
-        (patterns if _is_pattern(feature) else lines)[feature.placed.layer] += 1
-    return [
-        Finding(
-            "unclassified-left-out",
-            f"{_counted(lines[layer], patterns[layer])} on layer '{layer}' on the floor are left "
-            "out: the layer's name says nothing",
-            f"{SAY_WHAT} if they stop the robot",
-            layer=layer,
+    drawn = rough_lines(loose)
+    by_layer: defaultdict[str, dict[int, tuple[Feature, BaseGeometry]]] = defaultdict(dict)
+    for i in np.flatnonzero(shapely.intersects(floor, drawn)).tolist():
+        placed = loose[i].placed
+        by_layer[placed.layer].setdefault(id(placed), (loose[i], drawn[i]))
+    found = []
+    for layer, entities in by_layer.items():
+        n_patterns = sum(_is_pattern(feature) for feature, _ in entities.values())
+        first, line = next(iter(entities.values()))
+        found.append(
+            Finding(
+                "unclassified-left-out",
+                f"{_counted(len(entities) - n_patterns, n_patterns)} on layer '{layer}' on the "
+                "floor are left out: the layer's name says nothing",
+                f"{SAY_WHAT} if they stop the robot",
+                layer=layer,
+                handle=first.placed.handle,
+                at_mm=_place_mm(line, frame),
+            )
         )
-        for layer in {**lines, **patterns}
-    ]
+    return found
 
 
 def _counted(n_lines: int, n_patterns: int) -> str:
@@ -218,32 +227,32 @@ def _is_arrow(feature: Feature) -> bool:
     return feature.is_area and isinstance(entity, LWPolyline | Polyline) and not entity.is_closed
 
 
-def _found(
-    code: str, things: Sequence[Obstacle], message: str, remedy: str, frame: Frame
-) -> list[Finding]:
+def _found(code: str, things: Sequence[Obstacle], frame: Frame) -> list[Finding]:
     """A finding for each layer, with the handle and the place of the first thing on it."""
     by_layer: defaultdict[str, list[Obstacle]] = defaultdict(list)
     for thing in things:
         by_layer[thing.layer].append(thing)
+    message, remedy = SAID[code]
     return [
         Finding(
             code,
-            message.format(
-                count=len(on_layer),
-                layer=layer,
-                area=sum(thing.region().area for thing in on_layer) / 1e6,
-            ),
+            f"{len(on_layer)} {message.format(where=_where(layer, on_layer))}",
             remedy,
             layer=layer,
             handle=on_layer[0].handle,
-            at_mm=_place_mm(on_layer[0], frame),
+            at_mm=_place_mm(on_layer[0].region(), frame),
         )
         for layer, on_layer in by_layer.items()
     ]
 
 
-def _place_mm(thing: Obstacle, frame: Frame) -> tuple[float, float]:
+def _where(layer: str, things: Sequence[Obstacle]) -> str:
+    area_m2 = sum(thing.region().area for thing in things) / 1e6
+    return f"on layer '{layer}', {area_m2:.2f} m² together"
+
+
+def _place_mm(shape: BaseGeometry, frame: Frame) -> tuple[float, float]:
     """A spot in a shape, in the drawing's axes."""
-    spot = thing.region().representative_point()
+    spot = shape.representative_point()
     x_mm, y_mm = frame.to_drawing_mm([(spot.x, spot.y)])[0]
     return float(x_mm), float(y_mm)
