@@ -81,11 +81,11 @@ def _with_fills(
     """The fills of walls, or of columns, on layers of patterns, where nothing else draws these."""
     verdicts = {
         layer: table.of_fill(layer)
-        for layer in {e.placed.layer for e in seen if _is_ignored_fill(e)}
+        for layer in {e.placed.layer for e in seen if is_ignored_fill(e)}
     }
     told = [
         replace(entity, verdict=verdicts[entity.placed.layer])
-        if _is_ignored_fill(entity) and verdicts[entity.placed.layer].meaning is meaning
+        if is_ignored_fill(entity) and verdicts[entity.placed.layer].meaning is meaning
         else entity
         for entity in seen
     ]
@@ -115,7 +115,7 @@ def _tells(entity: Seen, table: LayerTable) -> bool:
     return by_layer.meaning is verdict.meaning or verdict.certainty is Certainty.GIVEN
 
 
-def _is_ignored_fill(entity: Seen) -> bool:
+def is_ignored_fill(entity: Seen) -> bool:
     """Whether a fill is left out for its layer; what the user's file leaves out stays out."""
     verdict = entity.verdict
     is_left_out = verdict.meaning is Meaning.IGNORE and verdict.certainty is not Certainty.GIVEN

@@ -177,7 +177,7 @@ def _standing(drawn: Drawn, terms: Terms, drawing: Survey) -> Standing:
     columns = parts[SOLID_KINDS.index(Kind.COLUMN)].obstacles
     parts.append(_walls(by_kind[Kind.WALL], drawn, columns, terms, drawing))
     known = [obstacle for part in parts for obstacle in part.obstacles]
-    parts.append(fills_alone(solid_fills(drawing.seen, terms.frame), known, terms))
+    parts.append(fills_alone(solid_fills(drawing.seen, terms.frame), drawn, known, terms))
     return Standing(
         tuple(obstacle for part in parts for obstacle in part.obstacles),
         tuple(finding for part in parts for finding in part.findings),

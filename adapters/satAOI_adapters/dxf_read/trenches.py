@@ -262,9 +262,10 @@ def _left_open(strokes: Sequence[Stroke], terms: Terms) -> Iterator[Finding]:
         start_mm, end_mm = terms.frame.to_drawing_mm(ends)
         yield Finding(
             "lines-open",
-            f"{len(own)} open lines on layer '{layer}' ({longest.kind}) enclose nothing: they "
-            "stop the robot where they are drawn, not beside them; the longest runs from "
-            f"({start_mm[0]:.1f}, {start_mm[1]:.1f}) to ({end_mm[0]:.1f}, {end_mm[1]:.1f}) mm",
+            f"{len(own)} open lines on layer '{layer}' ({longest.kind}) enclose nothing that can "
+            "be told from floor: they stop the robot where they are drawn, not beside them; the "
+            f"longest runs from ({start_mm[0]:.1f}, {start_mm[1]:.1f}) to "
+            f"({end_mm[0]:.1f}, {end_mm[1]:.1f}) mm",
             "close the outline in the drawing, or give --close-gaps if it ends short of a wall, "
             "if the robot must keep out of what is beside it",
             layer=layer,
