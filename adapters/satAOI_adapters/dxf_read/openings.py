@@ -193,7 +193,7 @@ def with_openings(
     tree = shapely.STRtree([wall.region() for wall in walls.obstacles])
     openings: list[Polygon] = []
     findings: list[Finding] = []
-    for spans in (*map(shut, doors), *map(_middles, _alone(masks, doors))):
+    for spans in (*map(shut, doors), *map(middles, _alone(masks, doors))):
         crossings = [_crossing(span, tree) for span in spans]
         over = _over(crossings)
         if any(_is_free(crossing, tree) for crossing in crossings):
@@ -245,7 +245,7 @@ def _leaf(line: LineString) -> LineString | None:
     """The middle line of what is as long and as thin as a leaf."""
     around = line.minimum_rotated_rectangle
     if isinstance(around, Polygon):
-        thickness, leaf = sorted(_middles(around), key=lambda span: span.width_mm)
+        thickness, leaf = sorted(middles(around), key=lambda span: span.width_mm)
         is_thin = thickness.width_mm <= LEAF_SLACK_MM
     else:
         leaf, is_thin = Span(line.coords[0], line.coords[-1]), True
@@ -283,14 +283,14 @@ def _over(crossings: Sequence[Crossing]) -> list[tuple[Span, Depth]]:
 
 def _crossings(rectangle: Polygon, tree: shapely.STRtree) -> list[Crossing]:
     """What walls do where a door is drawn that does not swing."""
-    return [_crossing(span, tree) for span in _middles(rectangle)]
+    return [_crossing(span, tree) for span in middles(rectangle)]
 
 
-def _middles(mask: Polygon) -> list[Span]:
+def middles(mask: Polygon) -> list[Span]:
     """The two middle lines of a rectangle around a mask."""
     corners = shapely.get_coordinates(mask.minimum_rotated_rectangle)
-    middles = [(float(x), float(y)) for x, y in (corners[:-1] + corners[1:]) / 2]
-    return [Span(middles[0], middles[2]), Span(middles[1], middles[3])]
+    halfway = [(float(x), float(y)) for x, y in (corners[:-1] + corners[1:]) / 2]
+    return [Span(halfway[0], halfway[2]), Span(halfway[1], halfway[3])]
 
 
 def _is_free(crossing: Crossing, tree: shapely.STRtree) -> bool:

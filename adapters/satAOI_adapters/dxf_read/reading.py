@@ -27,6 +27,8 @@ from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.fills import fills_alone, solid_fills
 from satAOI_adapters.dxf_read.floor import floor_of
 from satAOI_adapters.dxf_read.floor_layers import outer_edges
+from satAOI_adapters.dxf_read.glazing import between_rooms, with_marked_doors
+from satAOI_adapters.dxf_read.marks import marks_of
 from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
 from satAOI_adapters.dxf_read.openings import Still, shut, with_openings
 from satAOI_adapters.dxf_read.options import ReadOptions
@@ -87,7 +89,8 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
     start_mm, start_findings = _start(drawing, frame, options)
     everything = drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
     chosen_part, choice = _chosen(everything, options, start_mm, frame)
-    drawn = _with_doors(chosen_part)
+    marks = marks_of(drawing.expansion.placed, frame)
+    drawn, of_marks = with_marked_doors(_with_doors(chosen_part), marks, frame)
     terms = Terms(
         frame,
         options.close_gaps_mm,
@@ -109,6 +112,8 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
             *drawing.findings,
             *choice,
             *standing.findings,
+            *of_marks,
+            *between_rooms(drawn, floor.region, standing.obstacles, frame),
             *floor.findings,
             *between.findings,
             *others.findings,
@@ -199,7 +204,7 @@ def _walls(
     on_door_layers = partitions(drawn[Meaning.DOOR], faces, drawing.door_blocks)
     glazed = windows(drawn[Meaning.DOOR], faces, drawing.door_blocks)
     # a drawing with layers for windows has none on those of its doors
-    are_doors = bool(drawn[Meaning.WINDOW])
+    are_doors = drawing.has(Meaning.WINDOW)
     panes = [] if are_doors else [pane for window in glazed for pane in window]
     edges = outer_edges(drawn[Meaning.FLOOR])
     doors_on_layers = swings(drawn[Meaning.DOOR])

@@ -111,6 +111,10 @@ class Survey:
         of_unit = () if isinstance(self.known, UnitError) else self.known.findings
         return (*of_unit, *self.noticed)
 
+    def has(self, meaning: Meaning) -> bool:
+        """Whether anything of a meaning is drawn."""
+        return any(entity.verdict.meaning is meaning for entity in self.seen)
+
     def source(self) -> Source:
         """The file and its unit.
 
