@@ -317,6 +317,16 @@ def test_opening_with_a_swing_is_no_window(tmp_path: Path) -> None:
     assert standing(plan_of(document, tmp_path), "A-DOOR") == []
 
 
+def test_opening_with_a_swing_of_straight_lines_is_no_window(tmp_path: Path) -> None:
+    document = with_opening(5000, 5100, 5200)
+    on = {"layer": "A-DOOR"}
+    turns_rad = [math.radians(turn_deg) for turn_deg in (0, 30, 60, 90)]
+    spots = [(4000 + 1200 * math.cos(t), 5200 + 1200 * math.sin(t)) for t in turns_rad]
+    document.modelspace().add_lwpolyline(spots, dxfattribs=on)
+    document.modelspace().add_line((4000, 5200), spots[-1], dxfattribs=on)
+    assert standing(plan_of(document, tmp_path), "A-DOOR") == []
+
+
 def test_column_is_no_inside_of_a_wall(tmp_path: Path) -> None:
     document = drawing()
     document.modelspace().add_line((0, 5000), (4000, 5000), dxfattribs={"layer": "WALL"})

@@ -33,7 +33,7 @@ from satAOI_adapters.dxf_read.doors import (
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.groups import linked
 from satAOI_adapters.dxf_read.shapes import by_chords, is_wide, middle_line
-from satAOI_adapters.dxf_read.swings import LEAF_SLACK_MM, may_be_swing
+from satAOI_adapters.dxf_read.swings import LEAF_SLACK_MM, may_be_swing, swings
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_geo.plan import BoolArray, Finding, IntArray
 
@@ -156,7 +156,9 @@ def _are_many(lines: Sequence[LineString], group: IntArray) -> BoolArray:
 
 def _at_swings(lines: Sequence[LineString], doors: Sequence[Feature]) -> BoolArray:
     """Which lines end at the hinge of a door."""
-    hinges = [
+    hinges = [door.hinge for door in swings(doors)]
+    # an arc tells of a door where its leaf is not drawn, too
+    hinges += [
         piece.centre
         for feature in doors
         for path in feature.paths
