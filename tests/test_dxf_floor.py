@@ -260,6 +260,7 @@ def test_outline_within_that_of_the_floor_is_cut_out_and_said(layer: str, tmp_pa
     shell, hole = [(0, 0), (10_000, 0), (10_000, 8000), (0, 8000)], box(2000, 2000, 4000, 4000)
     assert floor_of(plan).equals(Polygon(shell).difference(hole))
     finding = said(plan, "floor-hole")
+    assert finding.layer == layer
     assert "4.00 m²" in finding.message
     assert finding.at_mm is not None
     assert hole.contains(shapely.Point(finding.at_mm))

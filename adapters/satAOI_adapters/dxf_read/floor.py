@@ -242,12 +242,13 @@ def _guessed(regions: Sequence[BaseGeometry]) -> Floor:
 def _shares(shown: Shown, free: BaseGeometry) -> str:
     covered_m2 = shown.region.intersection(free).area / 1e6
     return (
-        f"{shown.layers} shows {covered_m2:.2f} of the {free.area / 1e6:.2f} m² that walls enclose"
+        f"{covered_m2:.2f} of the {free.area / 1e6:.2f} m² that walls enclose are shown on "
+        f"{shown.layers}"
     )
 
 
 def _in_part(shown: Shown, free: BaseGeometry, terms: Terms) -> Iterator[Finding]:
-    rest = polygons_in([free.difference(shown.region)])
+    rest = polygons_in([free.difference(shapely.union_all([shown.region, *shown.holes]))])
     rooms = [part for part in rest if not is_thin(part, ROOM_MM)]
     if rooms:
         yield said(
@@ -255,7 +256,7 @@ def _in_part(shown: Shown, free: BaseGeometry, terms: Terms) -> Iterator[Finding
             f"{_shares(shown, free)}: the rest is taken as no floor",
             "draw the outline of all of it on a layer FLOOR if the robot is to trowel the rest, "
             "too",
-            shown,
+            shown.first,
             terms.place(middle(max(rooms, key=lambda part: part.area))),
         )
 
@@ -267,17 +268,17 @@ def _finish(shown: Shown, free: BaseGeometry, terms: Terms) -> Finding:
         "taken as all that walls enclose",
         "draw the floor's outline on a layer FLOOR, or say in a file for --layers that the layer "
         "is the floor, if it ends there",
-        shown,
-        terms.place(shown.features[0].paths[0].start),
+        shown.first,
+        terms.place(shown.first.paths[0].start),
     )
 
 
 def _joined_rooms(joints: Sequence[Polygon], shown: Shown, terms: Terms) -> Finding:
     return said(
         "doorways-joined",
-        f"{shown.layers} shows the floor room by room: {len(joints)} doorways between the rooms, "
-        f"{sum(joint.area for joint in joints) / 1e6:.2f} m² together, are taken as floor",
+        f"the floor is shown room by room on {shown.layers}: {len(joints)} doorways between the "
+        f"rooms, {sum(joint.area for joint in joints) / 1e6:.2f} m² together, are taken as floor",
         "draw the floor's outline on a layer FLOOR if the rooms are apart",
-        shown,
+        shown.first,
         terms.place(middle(joints[0])),
     )

@@ -1,7 +1,7 @@
 """What layers of floors show: outlines, fills, and loose lines that enclose."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -41,14 +41,21 @@ class Shown:
     Attributes:
         features: All that is drawn on them.
         region: What that encloses or fills; empty where it does neither.
+        holes: Outlines that are cut out of it.
         joined: The loose lines.
         findings: What is to be said about it.
     """
 
     features: tuple[Feature, ...]
     region: Region
+    holes: tuple[Polygon, ...]
     joined: Network
     findings: tuple[Finding, ...]
+
+    @property
+    def first(self) -> Feature:
+        """The first thing drawn on them."""
+        return self.features[0]
 
     @property
     def layers(self) -> str:
@@ -93,7 +100,7 @@ def shown_by(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], terms: Ter
         obstacles: At which tiles end.
         terms: The terms of the reading.
     """
-    outlines: list[Polygon] = []
+    outlines: list[tuple[Polygon, Feature]] = []
     filled: list[BaseGeometry] = []
     lines: list[LineString] = []
     curved: list[Polygon] = []
@@ -103,7 +110,7 @@ def shown_by(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], terms: Ter
             continue
         for path in feature.paths:
             if path.closed:
-                outlines.extend(room(path))
+                outlines.extend((outline, feature) for outline in room(path))
             else:
                 lines.append(middle_line(path))
                 curved.extend(slivers(path))
@@ -111,16 +118,19 @@ def shown_by(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], terms: Ter
     panels, left_out = _panels(joined, obstacles)
     # chords reach over curves that bulge inwards
     loops = shapely.union_all(panels).difference(shapely.union_all(curved))
-    areas, holes = nested(outlines)
-    shown = Shown(
-        tuple(drawn), tidy(shapely.union_all([areas, loops, *filled])), joined, findings=()
+    areas, holes = nested([outline for outline, _ in outlines])
+    owners = {id(outline): feature for outline, feature in outlines}
+    return Shown(
+        tuple(drawn),
+        tidy(shapely.union_all([areas, loops, *filled])),
+        tuple(holes),
+        joined,
+        (
+            *_cut_out(holes, owners, terms),
+            *_no_tiles(left_out, drawn[0]),
+            *_joined_gaps(joined, drawn[0], terms),
+        ),
     )
-    findings = (
-        *_cut_out(holes, shown, terms),
-        *_no_tiles(left_out, drawn[0]),
-        *_joined_gaps(joined, drawn[0], terms),
-    )
-    return replace(shown, findings=findings)
 
 
 def outer_edges(drawn: Sequence[Feature]) -> list[LineString]:
@@ -173,7 +183,7 @@ def _panels(joined: Network, obstacles: Sequence[Obstacle]) -> tuple[list[Polygo
 
 def open_outline(shown: Shown, terms: Terms) -> DrawingError:
     """Why no floor comes of layers that enclose nothing."""
-    placed = shown.features[0].placed
+    placed = shown.first.placed
     ends = [end for end, _ in shown.joined.loose]
     if len(ends) < 2:
         return DrawingError(
@@ -196,7 +206,7 @@ def open_outline(shown: Shown, terms: Terms) -> DrawingError:
 
 def only_lines(shown: Shown) -> DrawingError:
     """Why no floor comes of layers that hold nothing but the lines of a plan."""
-    placed = shown.features[0].placed
+    placed = shown.first.placed
     return DrawingError(
         f"{shown.layers} should show the floor by name, but what is drawn there encloses nothing "
         f"wider than {WALL_MM:g} mm; draw the floor's outline on a layer FLOOR, or say in a file "
@@ -206,9 +216,9 @@ def only_lines(shown: Shown) -> DrawingError:
     )
 
 
-def said(code: str, message: str, remedy: str, shown: Shown, at_mm: Point) -> Finding:
-    """What is to be said about layers, with the first thing drawn on them."""
-    placed = shown.features[0].placed
+def said(code: str, message: str, remedy: str, feature: Feature, at_mm: Point) -> Finding:
+    """What is to be said about something drawn on floor layers."""
+    placed = feature.placed
     return Finding(code, message, remedy, layer=placed.layer, handle=placed.handle, at_mm=at_mm)
 
 
@@ -218,17 +228,30 @@ def middle(part: Polygon) -> Point:
     return spot.x, spot.y
 
 
-def _cut_out(holes: Sequence[Polygon], shown: Shown, terms: Terms) -> Iterator[Finding]:
-    if holes:
-        yield said(
+def _cut_out(
+    holes: Sequence[Polygon], owners: Mapping[int, Feature], terms: Terms
+) -> tuple[Finding, ...]:
+    """What is to be said about outlines within others.
+
+    Args:
+        holes: These outlines, the largest first.
+        owners: Whose each is, by its identity.
+        terms: The terms of the reading.
+    """
+    if not holes:
+        return ()
+    owner = owners[id(holes[0])]
+    return (
+        said(
             "floor-hole",
-            f"{len(holes)} outlines on {shown.layers} lie within others, "
-            f"{shapely.union_all(holes).area / 1e6:.2f} m² together: they are taken as holes or "
-            "steps, and are no floor",
+            f"{len(holes)} outlines within that of the floor, the largest on layer "
+            f"'{owner.placed.layer}', {shapely.union_all(holes).area / 1e6:.2f} m² together, are "
+            "taken as holes or steps, and are no floor",
             "draw what is level floor on another layer",
-            shown,
+            owner,
             terms.place(middle(holes[0])),
-        )
+        ),
+    )
 
 
 def _no_tiles(left_out: Sequence[Polygon], feature: Feature) -> tuple[Finding, ...]:
