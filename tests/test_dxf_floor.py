@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 import shapely
+from ezdxf import transform
 from ezdxf.document import Drawing
 from ezdxf.layouts import Modelspace
+from ezdxf.math import Matrix44
 from shapely.geometry import Polygon, box
 
 from satAOI_geo.errors import DrawingError
@@ -83,6 +85,34 @@ def test_gate_is_closed_where_most_walls_would_lie_beside_the_floor(
     assert f"{gate_mm / 1000:.2f} m" in finding.message
     assert finding.at_mm is not None
     assert abs(finding.at_mm[1] - 5000) < 1
+
+
+def reversed_order(document: Drawing) -> None:
+    """What is drawn last comes first."""
+    space = document.modelspace()
+    for entity in [entity.copy() for entity in space][::-1]:
+        space.add_entity(entity)
+    for entity in list(space)[: len(space) // 2]:
+        space.delete_entity(entity)
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 30.0, 137.0])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_closed_gate_does_not_hang_on_how_the_drawing_lies(
+    turn_deg: float, sign: int, tmp_path: Path
+) -> None:
+    document = hall(gate_mm=4000.0)
+    reversed_order(document)
+    space = document.modelspace()
+    turn = Matrix44.z_rotate(math.radians(turn_deg))
+    mirror = Matrix44.scale(sign, 1, 1)
+    transform.inplace(space, mirror @ turn)
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == pytest.approx(HALL.area, rel=1e-6)
+    at_mm = said(plan, "wide-opening-closed").at_mm
+    place = (mirror @ turn).transform((20_100, 5000, 0))
+    assert at_mm is not None
+    assert math.dist(at_mm, (place.x, place.y)) < 150
 
 
 def test_walls_beside_the_floor_are_said_where_no_gate_closes_it(tmp_path: Path) -> None:
