@@ -124,6 +124,27 @@ def test_last_bay_under_covers_ends_at_the_wall(tmp_path: Path) -> None:
     assert free_mm2(plan) == HALL_MM2 - 20_000 * 800
 
 
+def test_curved_trench_is_solid(tmp_path: Path) -> None:
+    document = hall()
+    for radius_mm in (6000, 7000):
+        on = {"layer": "TRENCH"}
+        document.modelspace().add_arc((10_000, 0), radius_mm, 0, 180, dxfattribs=on)
+    plan = plan_of(document, tmp_path)
+    half_ring_mm2 = math.pi * (7000**2 - 6000**2) / 2
+    assert free_mm2(plan) == pytest.approx(HALL_MM2 - half_ring_mm2, rel=1e-5)
+    assert "lines-open" not in codes(plan)
+
+
+def test_trench_that_crosses_two_floors_is_solid_on_both(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 20_000, 0, 30_000, 10_000, layer="FLOOR")
+    for y in (4500, 5500):
+        document.modelspace().add_line((-100, y), (30_100, y), dxfattribs={"layer": "TRENCH"})
+    plan = plan_of(document, tmp_path)
+    assert free_mm2(plan) == 2 * 10_000 * (10_000 - 1000)
+    assert "lines-open" not in codes(plan)
+
+
 def test_steps_from_wall_to_wall_are_solid(tmp_path: Path) -> None:
     document = hall(*across(*range(2000, 4801, 280)), layer="STAIR")
     assert free_mm2(plan_of(document, tmp_path)) == HALL_MM2 - 20_000 * 2800

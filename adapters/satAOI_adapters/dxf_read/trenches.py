@@ -102,8 +102,9 @@ def trenches(drawn: Drawn, known: Sequence[Obstacle], floor: Region, terms: Term
     open_ones = [strokes[i] for i in np.flatnonzero(is_open)]
     spaces = _spaces(faces, open_ones, lines[is_covered], beside_mm)
     obstacles = _solid(spaces, near, beside_mm)
-    is_told = _covered(lines[is_open], [*known, *obstacles])
-    loose = [stroke for stroke, is_in in zip(open_ones, is_told, strict=True) if not is_in]
+    on_floor = shapely.intersection(lines[is_open], floor)
+    is_rim = _covered(on_floor, [*known, *obstacles])
+    loose = [stroke for stroke, is_in in zip(open_ones, is_rim, strict=True) if not is_in]
     return Standing(obstacles, (*_filled(obstacles, terms), *_left_open(loose, terms)))
 
 
@@ -128,7 +129,9 @@ def _covered(lines: GeometryArray, obstacles: Sequence[Obstacle]) -> BoolArray:
 
 
 def _is_solid(obstacle: Obstacle) -> bool:
-    return not isinstance(obstacle.shape, LineString)
+    """Whether an obstacle is more than a line: a curve without width is a sliver that holds it."""
+    region = obstacle.region()
+    return bool(region.area > CLOSE_GAPS_MM * region.length)
 
 
 def _near(lines: GeometryArray, known: Sequence[Obstacle]) -> list[Obstacle]:
