@@ -285,9 +285,24 @@ def test_frame_with_glass_in_it_between_two_faces_is_a_window_and_its_place_is_s
     plan = plan_of(document, tmp_path)
     assert plan.obstacle_region().covers(box(4000, 5000, 5200, 5200))
     (said,) = [finding for finding in plan.findings if finding.code == "window-on-door-layer"]
-    assert "1 times" in said.message
+    assert "in 1 openings" in said.message
     assert said.at_mm in {(4000.0, 5000.0), (4000.0, 5070.0)}
     assert said.handle
+
+
+def test_outlines_side_by_side_from_face_to_face_are_panes_and_no_leaves(tmp_path: Path) -> None:
+    document = with_opening()
+    for y in (5000, 5050, 5100, 5150):
+        rectangle(document.modelspace(), 4000, y, 5200, y + 50, layer="A-DOOR")
+    plan = plan_of(document, tmp_path)
+    assert plan.obstacle_region().covers(box(4000, 5000, 5200, 5200))
+
+
+def test_leaf_drawn_twice_between_thresholds_is_a_leaf(tmp_path: Path) -> None:
+    document = with_opening(5000, 5200)
+    for _ in range(2):
+        rectangle(document.modelspace(), 4000, 5080, 5200, 5120, layer="A-DOOR")
+    assert standing(plan_of(document, tmp_path), "A-DOOR") == []
 
 
 def test_dashed_lines_on_the_door_layer_are_no_glass(tmp_path: Path) -> None:

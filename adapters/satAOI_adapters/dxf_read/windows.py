@@ -117,7 +117,7 @@ def _finding(firsts: Sequence[Feature], terms: Terms, are_taken: str, remedy: st
     return Finding(
         "window-on-door-layer",
         f"{LINES} or more lines abreast from jamb to jamb on door layer '{placed.layer}' "
-        f"{are_taken}: {len(firsts)} times, the first at ({x_mm:.1f}, {y_mm:.1f}) mm",
+        f"{are_taken}, in {len(firsts)} openings, the first at ({x_mm:.1f}, {y_mm:.1f}) mm",
         remedy,
         layer=placed.layer,
         handle=placed.handle,
@@ -126,19 +126,26 @@ def _finding(firsts: Sequence[Feature], terms: Terms, are_taken: str, remedy: st
 
 
 def _without_leaves(doors: Sequence[Feature]) -> list[Feature]:
-    """Features less the outlines as thin as a leaf within which nothing is drawn: no glass."""
+    """Features less the outlines of leaves."""
     drawn = shapely.STRtree([middle_line(path) for feature in doors for path in feature.paths])
-
-    def is_leaf(path: Path) -> bool:
-        if not path.closed or is_wide(path, LEAF_SLACK_MM):
-            return False
-        within = by_chords(path).buffer(-APART_MM)
-        return not (within.is_empty or drawn.query(within, predicate="intersects").size)
-
-    kept = (tuple(path for path in feature.paths if not is_leaf(path)) for feature in doors)
+    kept = (tuple(p for p in feature.paths if not _is_leaf(p, drawn)) for feature in doors)
     return [
         replace(feature, paths=paths) for feature, paths in zip(doors, kept, strict=True) if paths
     ]
+
+
+def _is_leaf(path: Path, drawn: shapely.STRtree) -> bool:
+    """Whether an outline is as thin as a leaf, with no glass in it and no pane beside it."""
+    if not path.closed or is_wide(path, LEAF_SLACK_MM):
+        return False
+    outline = by_chords(path)
+    within = outline.buffer(-APART_MM)
+    if within.is_empty or drawn.query(within, predicate="intersects").size:
+        return False
+    around = drawn.geometries[drawn.query(outline, predicate="dwithin", distance=APART_MM)]
+    panes = around[shapely.is_closed(around)]
+    # one that is drawn twice is beside itself
+    return bool(shapely.covered_by(panes, outline.buffer(2 * APART_MM)).all())
 
 
 def _are_many(lines: Sequence[LineString], group: IntArray) -> BoolArray:
