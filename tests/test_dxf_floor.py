@@ -256,6 +256,19 @@ def test_room_that_a_layer_of_floors_leaves_out_is_said_with_its_place(tmp_path:
     assert box(0, 4100, 1900, 6000).contains(shapely.Point(at_mm))
 
 
+def test_court_that_an_outline_cuts_out_of_the_floor_is_no_floor(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    space = document.modelspace()
+    for low, high in ((-200, 30_200), (0, 30_000), (4000, 26_000), (4200, 25_800)):
+        rectangle(space, low, low, high, high, layer="WALL")
+    rectangle(space, -200, -200, 30_200, 30_200, layer="A-FLOR")
+    rectangle(space, 4000, 4000, 26_000, 26_000, layer="A-FLOR")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(
+        box(-200, -200, 30_200, 30_200).difference(box(4000, 4000, 26_000, 26_000))
+    )
+
+
 def test_outline_drawn_twice_is_the_floor(tmp_path: Path) -> None:
     document = drawing()
     rectangle(document.modelspace(), 0, 0, 10_000, 10_000, layer="FLOOR")

@@ -84,7 +84,7 @@ def floor_of(
     bounds = [o.region() for o in obstacles if o.kind in BOUNDING]
     shown = shown_by(drawn, obstacles, terms) if drawn else None
     if shown is not None and _is_all(shown.region, bounds):
-        floor = Floor(shown.region, "layer", shown.findings)
+        floor = _as_shown(shown)
     else:
         within = enclosed([*bounds, *sills], with_gates=terms.is_named)
         floor = (
@@ -106,6 +106,10 @@ def _is_all(region: Region, bounds: Sequence[BaseGeometry]) -> bool:
     return rest.is_empty or is_thin(rest, WALL_MM)
 
 
+def _as_shown(shown: Shown) -> Floor:
+    return Floor(shown.region, "layer", (*shown.cut_out, *shown.findings))
+
+
 def _shown(shown: Shown, within: Enclosed, bounds: Sequence[BaseGeometry], terms: Terms) -> Floor:
     """The floor that layers show, or what walls enclose where these layers show something else."""
     if within.region.is_empty:
@@ -113,16 +117,17 @@ def _shown(shown: Shown, within: Enclosed, bounds: Sequence[BaseGeometry], terms
             raise open_outline(shown, terms)
         if is_thin(shown.region, WALL_MM):
             raise only_lines(shown)
-        return Floor(shown.region, "layer", shown.findings)
-    free = within.region.difference(shapely.union_all(bounds))
+        return _as_shown(shown)
+    holes = shapely.union_all(shown.holes)
+    free = within.region.difference(shapely.union_all([*bounds, holes]))
     covers_most = shown.region.intersection(free).area >= MOST * free.area
     if covers_most or _is_meant(shown, free, terms):
         floor = _with_doorways(shown, free, terms)
         return replace(floor, findings=(*floor.findings, *_in_part(shown, free, terms)))
     return Floor(
-        within.region,
+        tidy(within.region.difference(holes)),
         "inferred",
-        (_finish(shown, free, terms), *_of_openings(within, terms)),
+        (_finish(shown, free, terms), *shown.cut_out, *_of_openings(within, terms)),
         others=shown.features,
     )
 
@@ -149,7 +154,7 @@ def _with_doorways(shown: Shown, free: BaseGeometry, terms: Terms) -> Floor:
     """The floor that layers show, with the doorways between the rooms that they show one by one."""
     rooms = shapely.STRtree(polygons_in([shown.region]))
     if len(rooms.geometries) < 2:
-        return Floor(shown.region, "layer", shown.findings)
+        return _as_shown(shown)
     gaps = polygons_in([free.difference(shown.region)])
     joints = [
         gap
@@ -158,9 +163,13 @@ def _with_doorways(shown: Shown, free: BaseGeometry, terms: Terms) -> Floor:
         and rooms.query(gap, predicate="dwithin", distance=CLOSE_GAPS_MM).size > 1
     ]
     if not joints:
-        return Floor(shown.region, "layer", shown.findings)
-    whole = tidy(shapely.union_all([shown.region, *joints]))
-    return Floor(whole, "layer", (*shown.findings, _joined_rooms(joints, shown, terms)))
+        return _as_shown(shown)
+    floor = _as_shown(shown)
+    return replace(
+        floor,
+        region=tidy(shapely.union_all([floor.region, *joints])),
+        findings=(*floor.findings, _joined_rooms(joints, shown, terms)),
+    )
 
 
 def _inferred(within: Enclosed, obstacles: Sequence[Obstacle], terms: Terms) -> Floor:
@@ -248,7 +257,7 @@ def _shares(shown: Shown, free: BaseGeometry) -> str:
 
 
 def _in_part(shown: Shown, free: BaseGeometry, terms: Terms) -> Iterator[Finding]:
-    rest = polygons_in([free.difference(shapely.union_all([shown.region, *shown.holes]))])
+    rest = polygons_in([free.difference(shown.region)])
     rooms = [part for part in rest if not is_thin(part, ROOM_MM)]
     if rooms:
         yield said(

@@ -43,13 +43,15 @@ class Shown:
         region: What that encloses or fills; empty where it does neither.
         holes: Outlines that are cut out of it.
         joined: The loose lines.
-        findings: What is to be said about it.
+        cut_out: What is to be said about the holes.
+        findings: What is to be said about the rest.
     """
 
     features: tuple[Feature, ...]
     region: Region
     holes: tuple[Polygon, ...]
     joined: Network
+    cut_out: tuple[Finding, ...]
     findings: tuple[Finding, ...]
 
     @property
@@ -125,11 +127,8 @@ def shown_by(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], terms: Ter
         tidy(shapely.union_all([areas, loops, *filled])),
         tuple(holes),
         joined,
-        (
-            *_cut_out(holes, owners, terms),
-            *_no_tiles(left_out, drawn[0]),
-            *_joined_gaps(joined, drawn[0], terms),
-        ),
+        _cut_out(holes, owners, terms),
+        (*_no_tiles(left_out, drawn[0]), *_joined_gaps(joined, drawn[0], terms)),
     )
 
 
