@@ -135,6 +135,16 @@ def test_curved_trench_is_solid(tmp_path: Path) -> None:
     assert "lines-open" not in codes(plan)
 
 
+@pytest.mark.parametrize("width_mm", [1000.0, 2000.0])
+def test_trench_between_lines_with_a_width_is_solid(width_mm: float, tmp_path: Path) -> None:
+    document = hall()
+    for line in across(4000, 4000 + width_mm):
+        on = {"layer": "TRENCH", "const_width": 20}
+        document.modelspace().add_lwpolyline(line, dxfattribs=on)
+    plan = plan_of(document, tmp_path)
+    assert free_mm2(plan) == HALL_MM2 - 20_000 * (10 + width_mm + 10)
+
+
 def test_trench_that_crosses_two_floors_is_solid_on_both(tmp_path: Path) -> None:
     document = drawing()
     rectangle(document.modelspace(), 20_000, 0, 30_000, 10_000, layer="FLOOR")

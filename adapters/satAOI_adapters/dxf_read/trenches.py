@@ -15,12 +15,13 @@ import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from satAOI_adapters.dxf_read.curves import Path
 from satAOI_adapters.dxf_read.expand import Placed
 from satAOI_adapters.dxf_read.linework import network
 from satAOI_adapters.dxf_read.obstacles import COVERED_MM, MOSTLY, Standing, outlines_of
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.plans import Drawn
-from satAOI_adapters.dxf_read.shapes import GeometryArray, is_thin, middle_line
+from satAOI_adapters.dxf_read.shapes import GeometryArray, band, is_thin, middle_line
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_adapters.layers import KINDS
 from satAOI_geo.plan import BoolArray, Finding, FloatArray, Kind, Obstacle, Region, polygons_in
@@ -54,11 +55,19 @@ PLACE_MM: Final = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """An open line on a layer of things that stop the robot."""
+    """An open line on a layer of things that stop the robot.
+
+    Attributes:
+        line: The line; of one with a width its outline.
+        kind: What it is drawn as.
+        placed: The entity it comes from.
+        is_band: Whether it has a width.
+    """
 
     line: LineString
     kind: Kind
     placed: Placed
+    is_band: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +101,10 @@ def trenches(drawn: Drawn, known: Sequence[Obstacle], floor: Region, terms: Term
     """
     strokes = _strokes(drawn)
     lines = np.array([stroke.line for stroke in strokes])
-    is_covered = _covered(lines, known)
+    # else a line with a width would count as a solid that covers its own outline
+    bands = {stroke.placed.handle for stroke in strokes if stroke.is_band}
+    others = [obstacle for obstacle in known if obstacle.handle not in bands]
+    is_covered = _covered(lines, others)
     is_open = shapely.intersects(floor, lines) & ~is_covered
     if not is_open.any():
         return Standing(())
@@ -101,7 +113,7 @@ def trenches(drawn: Drawn, known: Sequence[Obstacle], floor: Region, terms: Term
     beside_mm = 2 * terms.gap_mm + COVERED_MM
     open_ones = [strokes[i] for i in np.flatnonzero(is_open)]
     spaces = _spaces(faces, open_ones, lines[is_covered], beside_mm)
-    obstacles = _solid(spaces, near, beside_mm)
+    obstacles = _solid(spaces, _near(lines[is_open], others), beside_mm)
     on_floor = shapely.intersection(lines[is_open], floor)
     is_rim = _covered(on_floor, [*known, *obstacles])
     loose = [stroke for stroke, is_in in zip(open_ones, is_rim, strict=True) if not is_in]
@@ -110,14 +122,21 @@ def trenches(drawn: Drawn, known: Sequence[Obstacle], floor: Region, terms: Term
 
 def _strokes(drawn: Drawn) -> list[Stroke]:
     return [
-        Stroke(middle_line(path), kind, feature.placed)
+        Stroke(line, kind, feature.placed, is_band=feature.width_mm > 0)
         for meaning, kind in KINDS.items()
         if kind in WIDEST_MM
         for feature in drawn[meaning]
-        if not feature.is_area and not feature.width_mm
+        if not feature.is_area
         for path in feature.paths
         if not path.closed
+        for line in _lines(path, feature.width_mm)
     ]
+
+
+def _lines(path: Path, width_mm: float) -> list[LineString]:
+    if not width_mm:
+        return [middle_line(path)]
+    return [LineString(polygon.exterior.coords) for polygon in band(path, width_mm)]
 
 
 def _covered(lines: GeometryArray, obstacles: Sequence[Obstacle]) -> BoolArray:
