@@ -62,7 +62,7 @@ class Enclosed:
         region: Along the walls' outer faces, corner by corner, and straight across each opening at
             its narrowest place; empty where nothing is enclosed.
         opening: The widest opening that is closed, from side to side; None where there is none.
-        left_out: Share of the walls, by the length of their lines, that is at no room in it.
+        left_out: Share of the walls, by points along them, that is at none of its rooms.
     """
 
     region: Region
@@ -165,12 +165,12 @@ def enclosed(bounds: Sequence[BaseGeometry], *, with_gates: bool = False) -> Enc
         return Enclosed(MultiPolygon())
     mesh = Mesh.over(samples)
     found = _closed(mesh, walls, Polygon(), OPENING_STEPS_MM)
-    least = _of(found, walls, filled)
+    least = _of(found, walls, filled, samples)
     if not with_gates or least.left_out <= LEFT_OUT:
         return least
     for gate_mm in GATE_STEPS_MM:
         found = _closed(mesh, walls, found, (gate_mm,))
-        wider = _of(found, walls, filled)
+        wider = _of(found, walls, filled, samples)
         if wider.left_out <= LEFT_OUT:
             return wider
     return least
@@ -202,16 +202,26 @@ def _with_rim(walls: BaseGeometry, found: BaseGeometry) -> BaseGeometry:
     return shapely.union_all([*_beyond(found, shapely.get_parts(walls)), found.boundary])
 
 
-def _of(found: BaseGeometry, walls: BaseGeometry, filled: BaseGeometry) -> Enclosed:
+def _of(
+    found: BaseGeometry, walls: BaseGeometry, filled: BaseGeometry, samples: FloatArray
+) -> Enclosed:
     """What is to be known about what walls enclose."""
-    region, rooms = _with_rooms(found, filled)
+    region, parts = _with_rooms(found, filled)
     if region.is_empty:
         return Enclosed(region)
-    across = shapely.line_merge(region.boundary.difference(walls.buffer(NEXT_TO_MM)))
+    rooms = shapely.union_all(parts)
+    shapely.prepare(rooms)
+    is_beside = ~shapely.dwithin(rooms, shapely.points(samples), WALL_MM)
+    return Enclosed(region, _widest_opening(region.boundary, walls), float(is_beside.mean()))
+
+
+def _widest_opening(rim: BaseGeometry, walls: BaseGeometry) -> LineString | None:
+    """The longest part of a rim at which there is no wall."""
+    lines = shapely.get_parts(walls)
+    near = lines[shapely.STRtree(lines).query(rim, predicate="dwithin", distance=NEXT_TO_MM)]
+    across = shapely.line_merge(rim.difference(shapely.union_all(near).buffer(NEXT_TO_MM)))
     openings = [part for part in shapely.get_parts(across) if part.length > SAMPLE_MM]
-    widest = max(openings, key=lambda part: part.length, default=None)
-    beside = walls.difference(shapely.union_all(rooms).buffer(WALL_MM))
-    return Enclosed(region, widest, beside.length / walls.length)
+    return max(openings, key=lambda part: part.length, default=None)
 
 
 def _samples(walls: BaseGeometry) -> FloatArray:
