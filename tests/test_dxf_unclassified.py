@@ -126,6 +126,20 @@ def test_crossed_rectangle_is_an_opening_even_where_walls_are_all_around(tmp_pat
     assert plan.obstacle_region().contains(box(4000, 4000, 6000, 6000))
 
 
+def test_diagonals_drawn_twice_cross_a_rectangle_and_the_spokes_of_a_wheel_do_not(
+    tmp_path: Path,
+) -> None:
+    document = hall()
+    rectangle(document.modelspace(), 4000, 4000, 6000, 6000, layer="XYZ")
+    add_lines(document, *DIAGONALS, *[(end, start) for start, end in DIAGONALS], layer="ABC")
+    assert said(plan_of(document, tmp_path), "crossed") == ["ABC"]
+    spokes = [1000 * 2**0.5 * np.exp(1j * math.pi * k / 12) for k in range(12)]
+    for spoke in spokes:
+        ends = [(5000 + spoke.real, 5000 + spoke.imag), (5000 - spoke.real, 5000 - spoke.imag)]
+        add_lines(document, tuple(ends), layer="ABC")
+    assert said(plan_of(document, tmp_path), "crossed") == []
+
+
 def test_cross_without_sides_is_left_out_and_said(tmp_path: Path) -> None:
     document = hall()
     add_lines(document, *DIAGONALS, layer="XYZ")

@@ -20,11 +20,14 @@ from satAOI_adapters.dxf_read.shapes import is_thin, rounded
 LEAST_MM: Final = 3 * ALONG_MM
 """Of anything narrower, a line near one side is near the other, too."""
 
+MOST_HALVING: Final = 3
+"""Lines that may halve a diagonal: the other one, and each once more, drawn a hair beside."""
+
 
 def crossed(
     crossing: Sequence[Feature], drawn: Sequence[Feature], walls: Sequence[BaseGeometry]
 ) -> list[Loop]:
-    """Rectangles that are crossed by their diagonals, each with the two lines that cross it.
+    """Rectangles that are crossed by their diagonals, each with the lines that cross it.
 
     Two lines of one length that halve each other are the diagonals of a rectangle. Its sides must
     be drawn, too, or walls be along them: crosses alone mark anything.
@@ -58,13 +61,22 @@ def _is_line(feature: Feature) -> bool:
     return len(pieces) == 1 and isinstance(pieces[0], Line)
 
 
-def _halved(lines: Sequence[Feature]) -> Iterator[tuple[Polygon, tuple[Feature, Feature]]]:
-    """The rectangles whose diagonals are among some lines, less the narrow ones."""
-    ends = np.array([(line.paths[0].start, line.paths[0].end) for line in lines])
+def _halved(lines: Sequence[Feature]) -> Iterator[tuple[Polygon, tuple[Feature, ...]]]:
+    """The rectangles whose diagonals are among some lines, less the narrow ones.
+
+    Diagonals may be drawn twice; where many lines halve each other they are the spokes of a star.
+    """
+    drawn = [sorted((line.paths[0].start, line.paths[0].end)) for line in lines]
+    ends, owners = np.unique(np.array(drawn), axis=0, return_inverse=True)
+    copies: list[list[Feature]] = [[] for _ in ends]
+    for owner, line in zip(owners.tolist(), lines, strict=True):
+        copies[owner].append(line)
     lengths_mm = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
     tree = tree_of(np.column_stack((ends.mean(axis=1), lengths_mm)))
-    for i, j in tree.query_pairs(CLOSE_GAPS_MM, output_type="ndarray").tolist():
+    pairs = tree.query_pairs(CLOSE_GAPS_MM, output_type="ndarray")
+    n_halving = np.bincount(pairs.ravel(), minlength=len(ends))
+    for i, j in pairs[(n_halving[pairs] <= MOST_HALVING).all(axis=1)].tolist():
         corners = (ends[i, 0], ends[j, 0], ends[i, 1], ends[j, 1])
         for rectangle in rounded([Polygon(corners)]):
             if not is_thin(rectangle, LEAST_MM):
-                yield rectangle, (lines[i], lines[j])
+                yield rectangle, (*copies[i], *copies[j])
