@@ -294,7 +294,7 @@ def test_lines_of_a_plan_on_a_layer_of_floors_are_refused(tmp_path: Path) -> Non
         plan_of(document, tmp_path)
 
 
-@pytest.mark.parametrize("layer", ["SLAB", "S-SLAB-DEPR"])
+@pytest.mark.parametrize("layer", ["SLAB", "S-SLAB-STEP"])
 def test_outline_within_that_of_the_floor_is_cut_out_and_said(layer: str, tmp_path: Path) -> None:
     document = drawing(floor=False)
     rectangle(document.modelspace(), 0, 0, 10_000, 8000, layer="SLAB")
