@@ -80,6 +80,20 @@ def test_closet_with_a_door_in_it_is_a_room(tmp_path: Path) -> None:
     assert said(plan, "room-outline") == ["XYZ"]
 
 
+@pytest.mark.parametrize("n_closets", [0, 2, 3])
+def test_niche_is_a_room_on_a_layer_of_rooms_only(n_closets: int, tmp_path: Path) -> None:
+    document = hall()
+    for k in range(4):
+        rectangle(document.modelspace(), 2000 + 2200 * k, 0, 2200 + 2200 * k, 1500, layer="WALL")
+    for k in range(n_closets):
+        left = 2200 * (k + 1)
+        rectangle(document.modelspace(), left, 1300, left + 1200, 1500, layer="WALL")
+    # open to the hall with all of its 2 m, the closets with 0.8 m
+    niches = [(2200 * k, 0, 2200 * k + 2000, 1300) for k in range(n_closets + 1)]
+    plan = shapes_in(document, tmp_path, *niches)
+    assert len(standing(plan, "XYZ")) == (0 if n_closets == 3 else 1)
+
+
 def test_shapes_side_by_side_do_not_make_each_other_rooms(tmp_path: Path) -> None:
     pits = [(x, y, x + 1200, y + 1200) for x in (0, 1250, 2500) for y in (0, 1250, 2500)]
     assert len(standing(shapes_in(hall(), tmp_path, *pits), "XYZ")) == len(pits)

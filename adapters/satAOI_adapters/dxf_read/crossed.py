@@ -1,5 +1,6 @@
 """The sign for an opening in the floor: a rectangle with both its diagonals."""
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Final
 
@@ -10,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.curves import Line
 from satAOI_adapters.dxf_read.features import Feature
-from satAOI_adapters.dxf_read.groups import tree_of
+from satAOI_adapters.dxf_read.groups import Spots
 from satAOI_adapters.dxf_read.loops import Loop
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.plans import rough_lines
@@ -22,6 +23,10 @@ LEAST_MM: Final = 3 * ALONG_MM
 
 MOST_HALVING: Final = 3
 """Lines that may halve a diagonal: the other one, and each once more, drawn a hair beside."""
+
+
+OBLIQUE: Final = (math.cos(1), math.sin(1))
+"""A direction that lines of drawings are hardly ever in."""
 
 
 def crossed(
@@ -72,8 +77,11 @@ def _halved(lines: Sequence[Feature]) -> Iterator[tuple[Polygon, tuple[Feature, 
     for owner, line in zip(owners.tolist(), lines, strict=True):
         copies[owner].append(line)
     lengths_mm = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
-    tree = tree_of(np.column_stack((ends.mean(axis=1), lengths_mm)))
-    pairs = tree.query_pairs(CLOSE_GAPS_MM, output_type="ndarray")
+    middles = ends.mean(axis=1)
+    # the tree is flat: first the middles are told apart along one direction only, then along both
+    pairs = Spots(np.column_stack((middles @ OBLIQUE, lengths_mm))).pairs(CLOSE_GAPS_MM)
+    apart_mm = np.hypot(*(middles[pairs[:, 0]] - middles[pairs[:, 1]]).T)
+    pairs = pairs[apart_mm <= CLOSE_GAPS_MM]
     n_halving = np.bincount(pairs.ravel(), minlength=len(ends))
     for i, j in pairs[(n_halving[pairs] <= MOST_HALVING).all(axis=1)].tolist():
         corners = (ends[i, 0], ends[j, 0], ends[i, 1], ends[j, 1])

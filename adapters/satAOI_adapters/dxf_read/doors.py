@@ -17,7 +17,7 @@ from shapely.geometry.base import BaseGeometry
 from satAOI_adapters.dxf_read.curves import Arc, Line, Path, Point
 from satAOI_adapters.dxf_read.enclosure import OPENING_MM
 from satAOI_adapters.dxf_read.features import Feature
-from satAOI_adapters.dxf_read.groups import linked, tree_of
+from satAOI_adapters.dxf_read.groups import Spots, linked
 from satAOI_adapters.dxf_read.linework import PARALLEL
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.swings import (
@@ -142,8 +142,8 @@ def _by_swings(arcs: Sequence[Arc]) -> list[tuple[Point, Point]]:
     if not arcs:
         return []
     tips = [(arc.centre, tip) for arc in arcs for tip in (arc.start, arc.end)]
-    meeting = tree_of([tip for _, tip in tips]).query_pairs(LEAF_SLACK_MM)
-    shut = [*tips, *((tips[i][0], tips[j][0]) for i, j in sorted(meeting))]
+    meeting = Spots([tip for _, tip in tips]).pairs(LEAF_SLACK_MM)
+    shut = [*tips, *((tips[i][0], tips[j][0]) for i, j in meeting.tolist())]
     return [ends for ends in shut if math.dist(*ends) > OPENING_MM]
 
 
@@ -176,7 +176,7 @@ def _in_corners(lines: Sequence[LineString], is_long: BoolArray) -> BoolArray:
 def _chains(lines: Sequence[LineString]) -> IntArray:
     """The number of the chain, joined end to end, that each line is in."""
     ends = [line.coords[k] for line in lines for k in (0, -1)]
-    pairs = tree_of(ends).query_pairs(CLOSE_GAPS_MM, output_type="ndarray")
+    pairs = Spots(ends).pairs(CLOSE_GAPS_MM)
     return linked(pairs // 2, len(lines))
 
 

@@ -18,7 +18,7 @@ from satAOI_adapters.dxf_read.groups import linked
 from satAOI_adapters.dxf_read.linework import WALL_MM
 from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
 from satAOI_adapters.dxf_read.shapes import SAME_MM, GeometryArray, is_thin, rounded, tidy
-from satAOI_geo.plan import BoolArray, FloatArray, Region, polygons_in
+from satAOI_geo.plan import BoolArray, FloatArray, IntArray, Region, polygons_in
 
 OPENING_MM: Final = 2500.0
 """Widest opening in the outer walls that does not let the floor leak out: a double door."""
@@ -86,8 +86,8 @@ class Mesh:
     """
 
     points: FloatArray
-    neighbours: npt.NDArray[np.int32]
-    sides: npt.NDArray[np.int32]
+    neighbours: IntArray
+    sides: IntArray
     areas_mm2: FloatArray
     centres: shapely.STRtree
 
@@ -98,21 +98,24 @@ class Mesh:
         Without these the outermost points would lie on the rim of the triangulation, where those
         in one line count or do not as roundings have it.
         """
-        from scipy.spatial import Delaunay
-
         left, bottom = points.min(axis=0) - FAR_MM
         right, top = points.max(axis=0) + FAR_MM
         corners_mm = ((left, bottom), (right, bottom), (right, top), (left, top))
-        points = np.vstack((points, corners_mm))
-        delaunay = Delaunay(points)
-        corners = delaunay.simplices
-        # side k lies opposite corner k, as neighbour k does
+        cloud = shapely.multipoints(np.vstack((points, corners_mm)))
+        triangles = shapely.get_parts(shapely.delaunay_triangles(cloud))
+        drawn = shapely.get_coordinates(triangles).reshape(-1, 4, 2)[:, :3]
+        # a complex number for a point: these are sorted several times faster
+        places, corners = np.unique(drawn[..., 0] + 1j * drawn[..., 1], return_inverse=True)
+        corners = corners.reshape(-1, 3)
+        # side k lies opposite corner k
         sides = np.stack((corners[:, (1, 2)], corners[:, (2, 0)], corners[:, (0, 1)]), axis=1)
-        first, second, third = np.moveaxis(points[corners], 1, 0)
-        along, across = second - first, third - first
-        areas_mm2 = np.abs(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]) / 2
-        centres = shapely.STRtree(shapely.points((first + second + third) / 3))
-        return cls(points, delaunay.neighbors, sides, areas_mm2, centres)
+        return cls(
+            np.column_stack((places.real, places.imag)),
+            _on_the_other_side(sides),
+            sides,
+            shapely.area(triangles),
+            shapely.STRtree(shapely.centroid(triangles)),
+        )
 
     def outside(self, opening_mm: float) -> BoolArray:
         """The triangles that are reached from far away over sides longer than an opening."""
@@ -141,6 +144,24 @@ class Mesh:
         total_mm2 = np.bincount(owners, self.areas_mm2[triangles], n)
         dry_mm2 = np.bincount(owners, (self.areas_mm2 * ~outside)[triangles], n)
         return np.divide(dry_mm2, total_mm2, out=np.zeros(n), where=total_mm2 > 0)
+
+
+def _on_the_other_side(sides: IntArray) -> IntArray:
+    """The triangle that has the same side, for each side of triangles; -1 where none has.
+
+    Args:
+        sides: Shape (triangles, 3, 2), the numbers of both ends.
+
+    Returns:
+        Shape (triangles, 3).
+    """
+    ends = np.sort(sides.reshape(-1, 2), axis=1)
+    order = np.lexsort(ends.T)
+    is_twice = (ends[order[1:]] == ends[order[:-1]]).all(axis=1)
+    one, other = order[:-1][is_twice], order[1:][is_twice]
+    beyond = np.full(len(ends), -1)
+    beyond[one], beyond[other] = other // 3, one // 3
+    return beyond.reshape(-1, 3)
 
 
 def enclosed(bounds: Sequence[BaseGeometry], *, with_gates: bool = False) -> Enclosed:

@@ -1,32 +1,49 @@
 """Things joined by pairs into groups, and points that lie near each other.
 
-What scipy needs for this is loaded here and only when it is asked for: a drawing of closed shapes
-alone is read without it, a quarter of a second earlier.
+Scipy has both, and takes longer to load than most drawings to read.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
+from shapely.geometry import Point as Spot
 
+from satAOI_adapters.dxf_read.curves import Point
 from satAOI_geo.plan import FloatArray, IntArray
-
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
 
 
 def linked(pairs: IntArray, n: int) -> IntArray:
-    """The number of the group that each of n things is in, linked by pairs, shape (pairs, 2)."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
+    """The number of the group that each of n things is in, linked by pairs, shape (pairs, 2).
 
-    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    _, group = connected_components(links, directed=False)
-    return np.asarray(group, dtype=np.int64)
+    Groups are numbered in the order of their first member.
+    """
+    # the least member found so far stands for a group
+    least = np.arange(n)
+    while True:
+        one, other = least[pairs[:, 0]], least[pairs[:, 1]]
+        if (one == other).all():
+            break
+        np.minimum.at(least, np.maximum(one, other), np.minimum(one, other))
+        while not (least[least] == least).all():
+            least = least[least]
+    return np.unique(least, return_inverse=True)[1]
 
 
-def tree_of(points: Sequence[tuple[float, ...]] | FloatArray) -> "cKDTree":
-    """A tree of points in which those near a place are found quickly."""
-    from scipy.spatial import cKDTree
+class Spots:
+    """Points of which those near a place are found quickly, shape (n, 2)."""
 
-    return cKDTree(points)
+    def __init__(self, points: Sequence[Point] | FloatArray) -> None:
+        self._points = shapely.points(np.reshape(points, (-1, 2)))
+        self._tree = shapely.STRtree(self._points)
+
+    def near(self, place: Point, within: float) -> list[int]:
+        """Numbers of the points no farther away from a place, ascending."""
+        found = self._tree.query(Spot(place), predicate="dwithin", distance=within)
+        return sorted(found.tolist())
+
+    def pairs(self, within: float) -> IntArray:
+        """Numbers of points no farther away from each other, the lesser first, shape (pairs, 2)."""
+        one, other = self._tree.query(self._points, predicate="dwithin", distance=within)
+        pairs = np.column_stack((one, other))[one < other]
+        return np.asarray(pairs[np.lexsort(pairs.T[::-1])])

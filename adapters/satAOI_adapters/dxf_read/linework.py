@@ -17,7 +17,7 @@ from shapely.geometry import LineString, Polygon
 from shapely.geometry import Point as Spot
 
 from satAOI_adapters.dxf_read.curves import Point
-from satAOI_adapters.dxf_read.groups import tree_of
+from satAOI_adapters.dxf_read.groups import Spots
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.shapes import SAME_MM, TIE_MM, GeometryArray, rounded
 from satAOI_geo.plan import IntArray, polygons_in
@@ -123,10 +123,9 @@ def with_wall_ends(joined: Network) -> Network:
     """
     if len(joined.loose) < 2:
         return joined
-    tree = tree_of([end for end, _ in joined.loose])
+    near = Spots([end for end, _ in joined.loose]).pairs(WALL_MM + TIE_MM)
     pairs = sorted(
-        (math.dist(joined.loose[i][0], joined.loose[j][0]), i, j)
-        for i, j in tree.query_pairs(WALL_MM + TIE_MM)
+        (math.dist(joined.loose[i][0], joined.loose[j][0]), i, j) for i, j in near.tolist()
     )
     caps: list[LineString] = []
     capped: set[int] = set()

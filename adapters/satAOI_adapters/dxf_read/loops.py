@@ -14,7 +14,7 @@ from shapely.geometry import LineString, Polygon
 
 from satAOI_adapters.dxf_read.curves import Path
 from satAOI_adapters.dxf_read.features import Feature
-from satAOI_adapters.dxf_read.groups import linked, tree_of
+from satAOI_adapters.dxf_read.groups import Spots, linked
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.shapes import rounded, slivers
 from satAOI_geo.plan import FloatArray, polygons_in
@@ -50,7 +50,7 @@ def loops(features: Sequence[Feature]) -> list[Loop]:
 
 def _of_layer(lines: Sequence[tuple[Path, Feature]]) -> list[Loop]:
     ends = np.array([end for path, _ in lines for end in (path.start, path.end)])
-    pairs = tree_of(ends).query_pairs(CLOSE_GAPS_MM, output_type="ndarray")
+    pairs = Spots(ends).pairs(CLOSE_GAPS_MM)
     corner = linked(pairs, len(ends))
     # the ends of a line are linked through the line
     group = linked(np.vstack((pairs, np.arange(len(ends)).reshape(-1, 2))), len(ends))

@@ -1,10 +1,12 @@
 """Which closed outlines on layers without a meaning are those of rooms.
 
 A room's outline runs along walls all around but for its doorways. A pit or a machine in a corner
-runs along two walls and has its other two sides out on the floor.
+runs along two walls and has its other two sides out on the floor. Where a layer shows rooms, a
+niche with an open side is one, too.
 """
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from typing import Final
 
@@ -31,6 +33,16 @@ A door of 0.9 m in a closet of 1.1 × 1.5 m leaves 0.83; what fills a niche as d
 """
 
 
+OF_ROOMS: Final = 0.75
+"""A layer of which at least this share of the wide outlines are rooms shows rooms."""
+
+SEVERAL: Final = 3
+"""And so many of them are."""
+
+HALF: Final = 0.5
+"""On such a layer a niche is a room that has this share of its outline along walls."""
+
+
 def rooms_among(things: Sequence[Obstacle], known: Sequence[Obstacle]) -> set[int]:
     """The indices of those outlines that run along walls, or along those of other rooms.
 
@@ -52,7 +64,23 @@ def rooms_among(things: Sequence[Obstacle], known: Sequence[Obstacle]) -> set[in
         falls = {i for i in pending if share_along(rims[i], lines[held_by[i]]) < NEARLY}
         fallen |= falls
         pending = {k - len(walls) for i in falls for k in near[i] if k >= len(walls)} - fallen
-    return {wide[i] for i in range(len(wide)) if i not in fallen}
+    layers = [things[i].layer for i in wide]
+    of_rooms = _layers_of_rooms(layers, fallen)
+    niches = {
+        i
+        for i in fallen
+        if layers[i] in of_rooms
+        and share_along(rims[i], lines[[k for k in near[i] if k - len(walls) not in fallen]])
+        >= HALF
+    }
+    return {wide[i] for i in range(len(wide)) if i not in fallen - niches}
+
+
+def _layers_of_rooms(layers: Sequence[str], fallen: set[int]) -> set[str]:
+    """The layers on which most outlines, all but the fallen ones, are those of rooms."""
+    drawn = Counter(layers)
+    found = Counter(layer for i, layer in enumerate(layers) if i not in fallen)
+    return {layer for layer, n in found.items() if n >= max(SEVERAL, OF_ROOMS * drawn[layer])}
 
 
 def share_along(rim: BaseGeometry, lines: Sequence[BaseGeometry] | GeometryArray) -> float:

@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 from shapely.geometry import LineString
@@ -18,12 +18,9 @@ from shapely.geometry import Point as Spot
 
 from satAOI_adapters.dxf_read.curves import Arc, Line, Path, Piece, Point, Spline
 from satAOI_adapters.dxf_read.features import Feature
-from satAOI_adapters.dxf_read.groups import tree_of
+from satAOI_adapters.dxf_read.groups import Spots
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
-from satAOI_geo.plan import BoolArray
-
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
+from satAOI_geo.plan import BoolArray, FloatArray
 
 LEAF_MM: Final = 1300.0
 """No door leaf is longer."""
@@ -82,12 +79,14 @@ class _Lines:
     Attributes:
         lines: The pieces.
         is_alone: Which of them are no part of a polyline.
-        tree: Of their ends, two a line.
+        ends: Their starts and ends, two a line, shape (2 n, 2).
+        spots: The same, to be found by their place.
     """
 
     lines: Sequence[Line]
     is_alone: BoolArray
-    tree: "cKDTree"
+    ends: FloatArray
+    spots: Spots
 
     @classmethod
     def of(cls, paths: Sequence[Path]) -> "_Lines":
@@ -96,7 +95,8 @@ class _Lines:
         found = [(piece, n == 1) for piece, n in drawn if isinstance(piece, Line)]
         lines = [line for line, _ in found]
         is_alone = np.array([alone for _, alone in found])
-        return cls(lines, is_alone, tree_of([end for ln in lines for end in (ln.start, ln.end)]))
+        ends = np.array([end for line in lines for end in (line.start, line.end)])
+        return cls(lines, is_alone, ends, Spots(ends))
 
     def spot(self, end: int) -> Point:
         """Where one of the ends is, two a line."""
@@ -105,7 +105,7 @@ class _Lines:
 
     def from_near(self, spot: Point, within_mm: float) -> list[tuple[Line, Point, Point]]:
         """Lines that end near a point, each with that end and the other one."""
-        near = self.tree.query_ball_point(spot, within_mm)
+        near = self.spots.near(spot, within_mm)
         found = [(self.lines[i // 2], i % 2) for i in near]
         return [
             (line, line.end, line.start) if is_end else (line, line.start, line.end)
@@ -185,20 +185,18 @@ def _bows_of_lines(known: _Lines) -> Iterator[_Bow]:
 
 def _joints(known: _Lines) -> dict[int, int]:
     """The end at which each end of a short line goes on, where it does so in a bow and alone."""
-    spots = np.asarray(known.tree.data)
-    outwards = spots - spots[np.arange(len(spots)) ^ 1]
+    outwards = known.ends - known.ends[np.arange(len(known.ends)) ^ 1]
     length_mm = np.hypot(*outwards.T)
     is_short = (length_mm < LEAST_LEAF_MM) & np.repeat(known.is_alone, 2)
-    ends = np.flatnonzero(is_short)
-    distances_mm, near = known.tree.query(spots[ends], k=3, distance_upper_bound=CLOSE_GAPS_MM)
-    # nearest are the end itself and one other, in either order
-    has_one = np.isfinite(distances_mm[:, 1]) & ~np.isfinite(distances_mm[:, 2])
-    one, other = ends[has_one], near[has_one, :2].sum(axis=1) - ends[has_one]
+    pairs = known.spots.pairs(CLOSE_GAPS_MM)
+    one, other = np.vstack((pairs, pairs[:, ::-1])).T
+    has_one = is_short[one] & (np.bincount(one, minlength=len(known.ends))[one] == 1)
+    one, other = one[has_one], other[has_one]
     along = -(outwards[one] * outwards[other]).sum(axis=1)
     goes_on = along >= LEAST_COSINE * length_mm[one] * length_mm[other]
     goes_on &= is_short[other]
     joints = dict(zip(one[goes_on].tolist(), other[goes_on].tolist(), strict=True))
-    return {end: on for end, on in joints.items() if joints.get(on) == end}
+    return {end: on for end, on in sorted(joints.items()) if joints.get(on) == end}
 
 
 def _with_middles(corners: Sequence[Point]) -> tuple[Point, ...]:
@@ -268,7 +266,7 @@ def _length_mm(line: Line) -> float:
 def _caps(leaves: Sequence[Line], known: _Lines) -> list[Line]:
     """The short lines that run from a leaf's one side to its other."""
     ends = [end for leaf in leaves for end in (leaf.start, leaf.end)]
-    touched = {i for end in ends for i in known.tree.query_ball_point(end, CLOSE_GAPS_MM)}
+    touched = {i for end in ends for i in known.spots.near(end, CLOSE_GAPS_MM)}
     joining = [known.lines[i // 2] for i in touched if i % 2 == 0 and i + 1 in touched]
     return [line for line in joining if _length_mm(line) <= LEAF_SLACK_MM]
 
