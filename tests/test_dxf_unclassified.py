@@ -80,6 +80,14 @@ def test_closet_with_a_door_in_it_is_a_room(tmp_path: Path) -> None:
     assert said(plan, "room-outline") == ["XYZ"]
 
 
+@pytest.mark.parametrize("inner_mm", [0, 60])
+def test_copy_or_frame_of_a_pit_makes_no_room_of_it(inner_mm: int, tmp_path: Path) -> None:
+    left, right = 4000 + inner_mm, 6500 - inner_mm
+    plan = shapes_in(hall(), tmp_path, (4000, 4000, 6500, 6500), (left, left, right, right))
+    assert box(4000, 4000, 6500, 6500).within(plan.obstacle_region())
+    assert "room-outline" not in codes(plan)
+
+
 @pytest.mark.parametrize("n_closets", [0, 2, 3])
 def test_niche_is_a_room_on_a_layer_of_rooms_only(n_closets: int, tmp_path: Path) -> None:
     document = hall()

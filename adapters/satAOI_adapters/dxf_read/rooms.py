@@ -15,7 +15,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.shapes import GeometryArray, is_thin
-from satAOI_geo.plan import IntArray, Kind, Obstacle, polygons_in
+from satAOI_geo.plan import Kind, Obstacle, polygons_in
 
 ROOM_MM: Final = 1000.0
 """An outline at least this wide may be that of a room."""
@@ -55,8 +55,7 @@ def rooms_among(things: Sequence[Obstacle], known: Sequence[Obstacle]) -> set[in
     walls = [obstacle.region() for obstacle in known if obstacle.kind is Kind.WALL]
     rims = [things[i].region().boundary for i in wide]
     lines: GeometryArray = np.array([*walls, *rims], dtype=object)
-    own_line = np.arange(len(walls), len(lines))
-    near = _near(rims, own_line, lines)
+    near = _near([things[i].region() for i in wide], walls)
     fallen: set[int] = set()
     pending = set(range(len(wide)))
     while pending:
@@ -97,14 +96,17 @@ def _is_wide(thing: Obstacle) -> bool:
     return any(not is_thin(part, ROOM_MM) for part in polygons_in([thing.region()]))
 
 
-def _near(
-    rims: Sequence[BaseGeometry], own_line: IntArray, lines: GeometryArray
-) -> list[list[int]]:
-    """The indices of the lines that each outline may run along, itself left out."""
-    rim, line = shapely.STRtree(lines).query(rims, predicate="dwithin", distance=ALONG_MM)
-    is_other = own_line[rim] != line
-    rim, line = rim[is_other], line[is_other]
-    found: list[list[int]] = [[] for _ in rims]
-    for i, k in zip(rim.tolist(), line.tolist(), strict=True):
+def _near(regions: Sequence[BaseGeometry], walls: Sequence[BaseGeometry]) -> list[list[int]]:
+    """The indices of the walls, then of the outlines, that each outline may run along.
+
+    These lie beside it: a copy, a fill of it or a frame around it does not hold it up.
+    """
+    beside = np.array([*walls, *regions], dtype=object)
+    one, other = shapely.STRtree(beside).query(regions, predicate="dwithin", distance=ALONG_MM)
+    shared_mm2 = shapely.area(shapely.intersection(np.array(regions)[one], beside[other]))
+    smaller_mm2 = np.minimum(shapely.area(regions)[one], shapely.area(beside)[other])
+    is_beside = (other < len(walls)) | (shared_mm2 < HALF * smaller_mm2)
+    found: list[list[int]] = [[] for _ in regions]
+    for i, k in zip(one[is_beside].tolist(), other[is_beside].tolist(), strict=True):
         found[i].append(k)
     return found
