@@ -93,3 +93,17 @@ def test_fill_and_wide_line_are_walls_whatever_their_linetype(tmp_path: Path) ->
         [(0, 9000), (500, 9000)], dxfattribs=on | {"const_width": 200}
     )
     assert len(standing(plan_of(document, tmp_path), "WALL")) == 5
+
+
+@pytest.mark.parametrize("of", ["linetype", "layer_linetype"])
+def test_dashed_panel_of_an_overhead_door_is_no_wall(of: str, tmp_path: Path) -> None:
+    linetypes = {"linetype": "BYLAYER", "layer_linetype": "Continuous", of: "HIDDEN"}
+    document = with_lines()
+    document.layers.add("DOOR", linetype=linetypes["layer_linetype"])
+    corners = [Vec2(2000, 6500), Vec2(5000, 6500), Vec2(5000, 9000), Vec2(2000, 9000)]
+    for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
+        on = {"layer": "DOOR", "linetype": linetypes["linetype"]}
+        document.modelspace().add_line(start, end, dxfattribs=on)
+    plan = plan_of(document, tmp_path)
+    assert standing(plan, "DOOR") == []
+    assert "wall-on-door-layer" not in codes(plan)

@@ -16,9 +16,13 @@ ON_WINDOWS = {"layer": "WINDOW"}
 
 
 def shutter(width_mm: float = 4000, *, above: float = 4000) -> Drawing:
-    """A wall 200 mm thick across the floor, and two lines across the opening in it."""
+    """A wall 200 mm thick across the floor, and two lines across the opening in it.
+
+    A mark of a window, far from it, tells that the drawing marks its openings.
+    """
     document = drawing()
     space = document.modelspace()
+    says(document, "C1515", (9000, 9000))
     rectangle(space, 0, above, 3000, above + 200, layer="WALL")
     rectangle(space, 3000 + width_mm, above, 10_000, above + 200, layer="WALL")
     for y in (above, above + 200):
@@ -78,6 +82,50 @@ def test_text_nearer_to_another_opening_leaves_it_shut(tmp_path: Path) -> None:
     assert is_shut(plan_of(document, tmp_path))
 
 
+@pytest.mark.parametrize(("text", "leaves_at"), [("M1021", [3000]), ("M2021", [3000, 5000])])
+@pytest.mark.parametrize("turn_deg", [0.0, 143.0])
+def test_text_of_a_door_that_swings_leaves_the_window_beside_it_shut(
+    text: str, leaves_at: list[float], turn_deg: float, tmp_path: Path
+) -> None:
+    width_mm = int(text[1:3]) * 100
+    document = drawing()
+    space = document.modelspace()
+    says(document, "C1515", (9000, 9000))
+    window_at = 3000 + width_mm + 500
+    for x0, x1 in ((0, 3000), (window_at - 500, window_at), (window_at + width_mm, 10_000)):
+        rectangle(space, x0, 4000, x1, 4200, layer="WALL")
+    for y in (4000, 4200):
+        space.add_line((window_at, y), (window_at + width_mm, y), dxfattribs=ON_WINDOWS)
+    for hinge in leaves_at:
+        turn = (0, 90) if hinge == 3000 else (90, 180)
+        space.add_arc((hinge, 4100), 1000, *turn, dxfattribs=ON_WINDOWS)
+        space.add_line((hinge, 4100), (hinge, 5100), dxfattribs=ON_WINDOWS)
+    says(document, text, (window_at - 200, 4400))
+    transform.inplace(space, Matrix44.z_rotate(math.radians(turn_deg)))
+    plan = plan_of(document, tmp_path)
+    assert is_shut(plan)
+    assert "door-by-mark" not in codes(plan)
+
+
+def test_one_text_alone_may_name_a_machine_and_two_are_marks(tmp_path: Path) -> None:
+    document = shutter()
+    document.modelspace().query("TEXT").first.destroy()
+    says(document, "M4021")
+    alone = plan_of(document, tmp_path)
+    assert is_shut(alone)
+    assert "window-between-rooms" in codes(alone)
+    says(document, "M0921", (9000, 9000))
+    assert not is_shut(plan_of(document, tmp_path))
+
+
+def test_text_written_twice_in_one_place_is_one(tmp_path: Path) -> None:
+    document = shutter()
+    document.modelspace().query("TEXT").first.destroy()
+    says(document, "M4021")
+    says(document, "M4021")
+    assert is_shut(plan_of(document, tmp_path))
+
+
 def test_window_with_a_text_of_its_own_stays_shut_beside_that_of_a_door(tmp_path: Path) -> None:
     document = shutter()
     says(document, "JLM4045")
@@ -120,6 +168,7 @@ def test_two_leaves_that_slide_past_each_other_are_one_door_as_wide_as_both(
 ) -> None:
     document = drawing()
     space = document.modelspace()
+    says(document, "C1515", (9000, 9000))
     rectangle(space, 0, 4000, 3000, 4200, layer="WALL")
     rectangle(space, 5400, 4000, 10_000, 4200, layer="WALL")
     rectangle(space, 3000, 4060, 4300, 4100, layer="WINDOW")
@@ -134,6 +183,7 @@ def test_two_leaves_that_slide_past_each_other_are_one_door_as_wide_as_both(
 def test_shutter_in_the_outer_wall_still_bounds_the_floor(tmp_path: Path) -> None:
     document = drawing(floor=False)
     space = document.modelspace()
+    says(document, "C1515", (9000, 9000))
     # the faces of the walls of a hall of 10 × 8 m, open for 4 m at the bottom
     outer = [(3000, 0), (0, 0), (0, 8000), (10_000, 8000), (10_000, 0), (7000, 0)]
     inner = [(7000, 200), (9800, 200), (9800, 7800), (200, 7800), (200, 200), (3000, 200)]

@@ -561,6 +561,14 @@ def test_walls_on_a_nameless_layer_beside_doors_are_told_by_their_look(tmp_path:
     assert "walls-by-look" in codes(plan)
 
 
+def test_walls_on_a_nameless_layer_among_columns_are_told_by_their_look(tmp_path: Path) -> None:
+    document = house(opening_mm=900.0, layer="100 Baukörper")
+    rectangle(document.modelspace(), 4000, 2000, 4300, 2300, layer="Stützen")
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == OUTSIDE.area
+    assert "walls-by-look" in codes(plan)
+
+
 @pytest.mark.parametrize("sign", ["A-WALL", "FLOOR"])
 def test_nothing_is_told_by_its_look_where_walls_or_floor_are_named(
     sign: str, tmp_path: Path
@@ -646,7 +654,9 @@ def test_door_drawn_among_walls_is_left_out_and_the_walls_stay(leaf: str, tmp_pa
     assert "door-among-walls" in codes(plan)
 
 
-@pytest.mark.parametrize("arc", ["by hand", "polyline", "three sides", "lines", "spline"])
+@pytest.mark.parametrize(
+    "arc", ["by hand", "polyline", "three sides", "lines", "lines twice", "spline"]
+)
 def test_door_whose_arc_is_not_about_its_hinge_is_a_door_all_the_same(
     arc: str, tmp_path: Path
 ) -> None:
@@ -663,9 +673,11 @@ def test_door_whose_arc_is_not_about_its_hinge_is_a_door_all_the_same(
         step_deg = 20 if arc == "three sides" else 10
         turns_rad = [math.radians(turn_deg) for turn_deg in range(0, 61, step_deg)]
         spots = [(2000 + 900 * math.cos(t), 200 + 900 * math.sin(t)) for t in turns_rad]
-        if arc == "lines":
+        if arc.startswith("lines"):
             for start, end in pairwise(spots):
                 space.add_line(start, end, dxfattribs=on)
+                if arc == "lines twice":
+                    space.add_line(end, start, dxfattribs=on)
         elif arc == "spline":
             space.add_spline(spots, dxfattribs=on)
         else:

@@ -26,16 +26,16 @@ DASH_CODE, SHAPE_CODE = 49, 340
 
 
 def dashed_among(seen: Sequence[Seen]) -> frozenset[int]:
-    """Identities of what is drawn dashed on wall layers and on layers without a meaning.
+    """Identities of what is drawn dashed on layers of walls, of doors or without a meaning.
 
     Where most walls are dashed it is a manner of drawing and counts for nothing; so it does on
     layers that the user's own file names.
     """
     walls = [entity for entity in seen if entity.verdict.meaning is Meaning.WALL]
-    nameless = [entity for entity in seen if entity.verdict.meaning is None]
+    others = [entity for entity in seen if entity.verdict.meaning in {Meaning.DOOR, None}]
     guessed = [entity for entity in walls if entity.verdict.certainty is not Certainty.GIVEN]
     dashed_walls = _dashed(guessed)
-    return frozenset() if 2 * len(dashed_walls) > len(walls) else dashed_walls | _dashed(nameless)
+    return frozenset() if 2 * len(dashed_walls) > len(walls) else dashed_walls | _dashed(others)
 
 
 def without_dashed(

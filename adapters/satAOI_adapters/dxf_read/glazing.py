@@ -26,9 +26,9 @@ from satAOI_adapters.dxf_read.doors import (
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.groups import linked
 from satAOI_adapters.dxf_read.linework import WALL_MM
-from satAOI_adapters.dxf_read.marks import Mark
+from satAOI_adapters.dxf_read.marks import Mark, are_believed
 from satAOI_adapters.dxf_read.meaning import LISTED
-from satAOI_adapters.dxf_read.openings import Span, middles, shut
+from satAOI_adapters.dxf_read.openings import Span, as_one, middles, shut
 from satAOI_adapters.dxf_read.plans import Drawn
 from satAOI_adapters.dxf_read.shapes import middle_line
 from satAOI_adapters.dxf_read.swings import LEAF_SLACK_MM, LEAST_LEAF_MM, parted, swings
@@ -76,7 +76,7 @@ def with_marked_doors(
     drawn: Drawn, marks: Sequence[Mark], frame: Frame
 ) -> tuple[Drawn, tuple[Finding, ...]]:
     """What is drawn, with what marks say to be doors among the doors, and what is to be said."""
-    if not any(mark.is_door for mark in marks):
+    if not are_believed(marks):
         return drawn, ()
     marked = _marked(drawn, marks)
     are_doors = {id(piece.placed) for glazing, _ in marked for piece in glazing.pieces}
@@ -130,14 +130,20 @@ def _glazings(drawn: Drawn) -> list[Glazing]:
 
 
 def _marked(drawn: Drawn, marks: Sequence[Mark]) -> list[tuple[Glazing, Mark]]:
-    """What marks say to be doors: no other opening is nearer to these, and it is as wide."""
+    """What marks say to be doors: no other opening is nearer to these, and it is as wide.
+
+    A door that swings has its mark first, also where a window is nearer to it.
+    """
     found = _glazings(drawn)
     if not found:
         return []
     doors = swings([*drawn[Meaning.WINDOW], *drawn[Meaning.DOOR]])
-    swung = [span.line for door in doors for span in shut(door)]
-    openings = shapely.STRtree([*(glazing.lines for glazing in found), *swung])
-    spots = shapely.points([mark.at for mark in marks])
+    swung = [span for door in doors for span in shut(door)]
+    leaves = [*swung, *as_one(swung)]
+    openings = shapely.STRtree([*(g.lines for g in found), *(span.line for span in leaves)])
+    of_swings = {own for span in leaves if (own := _own_mark(span, marks)) is not None}
+    marks = [mark for i, mark in enumerate(marks) if i not in of_swings]
+    spots = [Spot(mark.at) for mark in marks]
     of_mark, nearest = openings.query_nearest(spots, max_distance=BESIDE_MM)
     beside: defaultdict[int, list[Mark]] = defaultdict(list)
     for m, i in zip(of_mark.tolist(), nearest.tolist(), strict=True):
@@ -148,6 +154,19 @@ def _marked(drawn: Drawn, marks: Sequence[Mark]) -> list[tuple[Glazing, Mark]]:
         if beside[i]
         and all(mark.is_door and mark.fits(glazing.span.width_mm) for mark in beside[i])
     ]
+
+
+def _own_mark(span: Span, marks: Sequence[Mark]) -> int | None:
+    """The number of the nearest mark that says of a door that swings how wide it is."""
+    line = span.line
+    beside = [
+        (away_mm, mark.at, i)
+        for i, mark in enumerate(marks)
+        if mark.is_door
+        and mark.fits(span.width_mm)
+        and (away_mm := line.distance(Spot(mark.at))) <= BESIDE_MM
+    ]
+    return min(beside)[-1] if beside else None
 
 
 def _by_mark(glazing: Glazing, mark: Mark, frame: Frame) -> Finding:

@@ -6,7 +6,7 @@ JLM4045 is a roller shutter of 4.0 × 4.5 m, C1515 a window.
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -62,6 +62,12 @@ def marks_of(placed: Iterable[Placed], frame: Frame) -> list[Mark]:
             width_mm = int(mark["width"]) * DECIMETRE_MM
             found.append(Mark(text, _place(entity, frame), is_door=is_door, width_mm=width_mm))
     return found
+
+
+def are_believed(marks: Sequence[Mark]) -> bool:
+    """Whether a drawing marks its openings: one text alone may name a machine or a room."""
+    doors_at = {mark.at for mark in marks if mark.is_door}
+    return bool(doors_at) and (len(doors_at) > 1 or not all(mark.is_door for mark in marks))
 
 
 def _text(entity: DXFEntity) -> str:

@@ -14,7 +14,7 @@ tell; that much is said, and so it is of a leaf that stands open at a wall witho
 
 import math
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, TypeAlias, TypeVar
 
@@ -223,6 +223,17 @@ def with_openings(
 def shut(door: Swing) -> list[Span]:
     """Where a door may be when it is shut."""
     return [Span(door.hinge, tip) for tip in door.shut_at]
+
+
+def as_one(spans: Sequence[Span]) -> Iterator[Span]:
+    """From hinge to hinge of two leaves whose tips meet."""
+    tips = shapely.STRtree([Spot(span.end) for span in spans])
+    near = tips.query(tips.geometries, predicate="dwithin", distance=LEAF_SLACK_MM)
+    for i, k in near.T.tolist():
+        one, other = spans[i], spans[k]
+        across_mm = math.dist(one.start, other.start)
+        if i < k and across_mm >= one.width_mm + other.width_mm - LEAF_SLACK_MM:
+            yield Span(one.start, other.start)
 
 
 def _alone(places: Sequence[GeometryT], doors: Sequence[Swing]) -> tuple[GeometryT, ...]:

@@ -201,8 +201,10 @@ def _walls(
     drawn_as_walls, _ = parted(on_walls, doors_on_walls)
     drawn_as_walls, of_dashes = without_dashed(drawn_as_walls, drawing.dashed, terms.frame)
     faces = _lines(drawn_as_walls)
-    on_door_layers = partitions(drawn[Meaning.DOOR], faces, drawing.door_blocks)
-    glazed = windows(drawn[Meaning.DOOR], faces, drawing.door_blocks)
+    # panels of overhead doors are drawn dashed, walls and windows are not
+    in_lines = [f for f in drawn[Meaning.DOOR] if id(f.placed) not in drawing.dashed]
+    on_door_layers = partitions(in_lines, faces, drawing.door_blocks)
+    glazed = windows(in_lines, faces, drawing.door_blocks)
     # a drawing with layers for windows has none on those of its doors
     are_doors = drawing.has(Meaning.WINDOW)
     panes = [] if are_doors else [pane for window in glazed for pane in window]

@@ -69,7 +69,7 @@ class Survey:
         box: Left, bottom, right, top of what is drawn, in drawing units; None if nothing is.
         door_blocks: Names of blocks that are doors.
         door_masks: Masks on door layers and in doors' blocks.
-        dashed: Identities of what is drawn dashed on wall layers and on layers without a meaning.
+        dashed: Identities of what is drawn dashed on layers of walls, doors or without a meaning.
         is_named: Whether layers tell what stops the robot, rather than everything being walls.
         middle: In the midst of it, in drawing units; a few strays do not move it.
         noticed: What was noticed so far, the unit aside.

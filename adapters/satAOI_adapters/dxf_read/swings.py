@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
-from typing import Final
+from typing import Final, TypeAlias
 
 import numpy as np
 from shapely.geometry import LineString
@@ -47,6 +47,10 @@ LEAST_COSINE: Final = math.cos(math.radians(45))
 """And they turn by less from one to the next, where they are not one polyline."""
 
 
+_Key: TypeAlias = frozenset[Point] | int
+"""What tells pieces apart: copies of a straight one, drawn either way, are one."""
+
+
 @dataclass(frozen=True, slots=True)
 class Swing:
     """A door as it is drawn.
@@ -77,8 +81,8 @@ class _Lines:
     """Straight pieces, which may be leaves or short sides of a bow.
 
     Attributes:
-        lines: The pieces.
-        is_alone: Which of them are no part of a polyline.
+        lines: The pieces, each once however often it is drawn.
+        is_alone: Which of them are drawn other than as part of a polyline.
         ends: Their starts and ends, two a line, shape (2 n, 2).
         spots: The same, to be found by their place.
     """
@@ -91,10 +95,16 @@ class _Lines:
     @classmethod
     def of(cls, paths: Sequence[Path]) -> "_Lines":
         """The straight pieces of paths, of which there is one at least."""
-        drawn = [(p, len(path.pieces)) for path in paths for p in path.pieces]
-        found = [(piece, n == 1) for piece, n in drawn if isinstance(piece, Line)]
-        lines = [line for line, _ in found]
-        is_alone = np.array([alone for _, alone in found])
+        alone_of: dict[_Key, bool] = {}
+        line_of: dict[_Key, Line] = {}
+        for path in paths:
+            for line in path.pieces:
+                if isinstance(line, Line):
+                    key = _key(line)
+                    line_of.setdefault(key, line)
+                    alone_of[key] = alone_of.get(key, False) or len(path.pieces) == 1
+        lines = list(line_of.values())
+        is_alone = np.array(list(alone_of.values()))
         ends = np.array([end for line in lines for end in (line.start, line.end)])
         return cls(lines, is_alone, ends, Spots(ends))
 
@@ -132,10 +142,10 @@ def parted(
     With a door go whatever else of the same paths lies within its circle: the other side of the
     leaf.
     """
-    doors_of: defaultdict[int, list[Swing]] = defaultdict(list)
+    doors_of: defaultdict[_Key, list[Swing]] = defaultdict(list)
     for swing in found:
         for piece in swing.drawn_by:
-            doors_of[id(piece)].append(swing)
+            doors_of[_key(piece)].append(swing)
     rest: list[Feature] = []
     doors: list[Feature] = []
     for feature in features:
@@ -271,15 +281,19 @@ def _caps(leaves: Sequence[Line], known: _Lines) -> list[Line]:
     return [line for line in joining if _length_mm(line) <= LEAF_SLACK_MM]
 
 
-def _draws_door(path: Path, doors_of: Mapping[int, Sequence[Swing]]) -> bool:
+def _key(piece: Piece) -> _Key:
+    return frozenset((piece.start, piece.end)) if isinstance(piece, Line) else id(piece)
+
+
+def _draws_door(path: Path, doors_of: Mapping[_Key, Sequence[Swing]]) -> bool:
     """Whether a path is a door's arc or leaf, and shows nothing beyond the door's circle.
 
     Args:
         path: What is drawn.
-        doors_of: The doors to which a piece belongs, by the piece's identity.
+        doors_of: The doors to which a piece belongs.
     """
     return any(
-        _holds(swing, path) for piece in path.pieces for swing in doors_of.get(id(piece), ())
+        _holds(swing, path) for piece in path.pieces for swing in doors_of.get(_key(piece), ())
     )
 
 

@@ -10,7 +10,6 @@ the depth of the wall and runs from jamb to jamb.
       threshold
 """
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import Final
 
@@ -20,8 +19,8 @@ from shapely.geometry import LineString, Polygon
 from satAOI_adapters.dxf_read.doors import ABREAST_MM
 from satAOI_adapters.dxf_read.linework import WALL_MM
 from satAOI_adapters.dxf_read.obstacles import Standing
-from satAOI_adapters.dxf_read.openings import PLACES, Span, depth_at, shut, walls_at
-from satAOI_adapters.dxf_read.swings import LEAF_SLACK_MM, Swing
+from satAOI_adapters.dxf_read.openings import PLACES, Span, as_one, depth_at, shut, walls_at
+from satAOI_adapters.dxf_read.swings import Swing
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_geo.plan import Finding, Obstacle
 
@@ -56,13 +55,7 @@ def _spans(doors: Sequence[Swing]) -> Iterator[Span]:
     for span in spans:
         yield span
         yield span.turned()
-    tips = shapely.STRtree(shapely.points([span.end for span in spans]))
-    near = tips.query(tips.geometries, predicate="dwithin", distance=LEAF_SLACK_MM)
-    for i, k in near.T.tolist():
-        one, other = spans[i], spans[k]
-        across_mm = math.dist(one.start, other.start)
-        if i < k and across_mm >= one.width_mm + other.width_mm - LEAF_SLACK_MM:
-            yield Span(one.start, other.start)
+    yield from as_one(spans)
 
 
 def _thresholds(span: Span, tree: shapely.STRtree, walls: Sequence[Obstacle]) -> Iterator[int]:
