@@ -7,6 +7,7 @@ import ezdxf
 import pytest
 from ezdxf.document import Drawing
 from ezdxf.layouts import Modelspace
+from ezdxf.math import Vec2
 
 from satAOI_geo.errors import DrawingError, InputError
 from tests.drawings import MM, codes, drawing, plan_of, rectangle, standing
@@ -204,7 +205,7 @@ def rectangle_of_lines(space: Modelspace, bounds: tuple[float, float, float, flo
         space.add_line(start, end, dxfattribs={"layer": "0"})
 
 
-def flat_on_layer_0(*, with_door: bool = True) -> Drawing:
+def flat_on_layer_0(*, with_door: bool = True, open_deg: float = 90.0) -> Drawing:
     """A room of 6 × 4 m inside walls 200 mm thick, with a shaft and a door in its lower wall."""
     document = drawing(floor=False)
     space = document.modelspace()
@@ -213,17 +214,19 @@ def flat_on_layer_0(*, with_door: bool = True) -> Drawing:
     for start, end in pairwise([*corners, corners[0]]):
         space.add_line(start, end, dxfattribs={"layer": "0"})
     if with_door:
-        space.add_arc((2000, 200), 900, 0, 90, dxfattribs={"layer": "0"})
-        space.add_line((2000, 200), (2000, 1100), dxfattribs={"layer": "0"})
+        space.add_arc((2000, 200), 900, 0, open_deg, dxfattribs={"layer": "0"})
+        tip = Vec2(2000, 200) + Vec2.from_deg_angle(open_deg, 900)
+        space.add_line((2000, 200), tip, dxfattribs={"layer": "0"})
     return document
 
 
+@pytest.mark.parametrize("open_deg", [30.0, 90.0])
 @pytest.mark.parametrize("margin_mm", [0.0, 500.0])
 def test_frame_and_title_block_among_the_walls_are_left_out_and_said(
-    margin_mm: float, tmp_path: Path
+    margin_mm: float, open_deg: float, tmp_path: Path
 ) -> None:
-    bare = plan_of(flat_on_layer_0(), tmp_path)
-    document = flat_on_layer_0()
+    bare = plan_of(flat_on_layer_0(open_deg=open_deg), tmp_path)
+    document = flat_on_layer_0(open_deg=open_deg)
     space = document.modelspace()
     rectangle_of_lines(space, (-5000, -6000, 16_000, 9000))
     if margin_mm:

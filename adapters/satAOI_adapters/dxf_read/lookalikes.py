@@ -1,8 +1,9 @@
 """Walls on layers whose names say nothing, told by their look where no other layer has walls.
 
-Where doors or windows are, there must be walls. Their faces are parallel lines about as far apart
-as bricks are thick; hardly anything else in a building consists of these. Outdoors pipes and kerbs
-do, and beside layers that are named as walls there is no need: nothing is told by its look there.
+Where doors, windows, columns or rooms are, there must be walls. Their faces are parallel lines
+about as far apart as bricks are thick; hardly anything else in a building consists of these.
+Outdoors pipes and kerbs do, and beside layers that are named as walls there is no need: nothing is
+told by its look there.
 """
 
 from collections import defaultdict
@@ -13,6 +14,7 @@ from typing import Final
 from satAOI_adapters.dxf_read.estimate import WALLS, beside
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.meaning import Seen
+from satAOI_adapters.dxf_read.plans import n_swings
 from satAOI_adapters.layers import Meaning, Verdict
 from satAOI_geo.plan import Finding
 
@@ -22,8 +24,8 @@ MOSTLY: Final = 0.5
 ENOUGH_MM: Final = 8000.0
 """And so long they must be together: the faces of a room's shorter walls."""
 
-IN_WALLS: Final = frozenset({Meaning.DOOR, Meaning.WINDOW})
-"""Meanings of which one on any layer tells that there are walls."""
+IN_WALLS: Final = frozenset({Meaning.DOOR, Meaning.WINDOW, Meaning.COLUMN, Meaning.ROOM})
+"""Meanings of which one on any layer tells that there are walls; so does a door that swings."""
 
 BOUNDING: Final = frozenset({Meaning.WALL, Meaning.FLOOR})
 """Meanings of which one on any layer makes looks unnecessary."""
@@ -39,7 +41,8 @@ def with_lookalikes(
         mm_per_unit: Millimetres in a drawing unit.
     """
     meanings = {entity.verdict.meaning for entity, _ in near}
-    if meanings & BOUNDING or not meanings & IN_WALLS:
+    is_building = meanings & IN_WALLS or any(n_swings(feature) for _, feature in near)
+    if meanings & BOUNDING or not is_building:
         return list(near), ()
     unknown: defaultdict[str, list[Feature]] = defaultdict(list)
     for entity, feature in near:
@@ -70,9 +73,8 @@ def look_like_walls(drawn: Sequence[Feature], mm_per_unit: float) -> bool:
 def _finding(layer: str, count: int) -> Finding:
     return Finding(
         "walls-by-look",
-        f"there are doors or windows, but no layer is named as one of walls: the {count} shapes on "
-        f"layer '{layer}' are taken as walls, since most of their lines run side by side as the "
-        "faces of walls do",
+        f"no layer is named as one of walls: the {count} shapes on layer '{layer}' are taken as "
+        "walls, since most of their lines run side by side as the faces of walls do",
         "say what the layer is in a file for --layers",
         layer=layer,
     )

@@ -6,6 +6,7 @@ Layers that nobody knows tell nothing of this, for they hold frames and legends 
 but clusters that linework on them runs between from wall to wall are parts of one plan.
 """
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -36,6 +37,9 @@ TOUCH_MM: Final = 1.0
 JOINED_MM: Final = 50.0
 """Linework this close to a wall runs up to it."""
 
+SWING_RAD: Final = (math.radians(25), math.radians(120))
+"""Doors are drawn open by 30° to a right angle."""
+
 SMALLEST_MM: Final = 1500.0
 """A cluster in which no disc of this diameter fits, or that stops no robot, is no plan."""
 
@@ -50,7 +54,7 @@ class Cluster:
     Attributes:
         hull: What it spans, in the plan's frame; convex.
         counts: Features in it by meaning.
-        n_swings: Quarter turns, such as doors draw.
+        n_swings: Turns, such as doors draw.
     """
 
     hull: BaseGeometry
@@ -162,9 +166,10 @@ def _holds(cluster: Cluster, spot_mm: Point) -> bool:
 
 
 def n_swings(feature: Feature) -> int:
-    """How many quarter turns, such as doors draw, a feature has."""
+    """How many turns, such as doors draw, a feature has."""
+    least_rad, most_rad = SWING_RAD
     return sum(
-        isinstance(piece, Arc) and np.pi / 3 <= piece.sweep_rad <= 2 * np.pi / 3
+        isinstance(piece, Arc) and least_rad <= piece.sweep_rad <= most_rad
         for path in feature.paths
         for piece in path.pieces
     )
