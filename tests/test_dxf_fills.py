@@ -21,15 +21,18 @@ def box(x0: float, y0: float, x1: float, y1: float) -> Corners:
     return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
 
 
-COLUMN = box(4000, 6800, 4500, 7300)
-"""A column half a metre wide that stands 200 mm out of the wall of `hall`."""
+COLUMN = box(3000, 6870, 3500, 7370)
+"""A column half a metre wide between two lengths of the wall of `hall`, deeper than these."""
 
 
 def hall(*fills: Corners, layer: str = "PUB_HATCH", pattern: bool = False) -> Drawing:
-    """A floor of 10 × 10 m with a wall 240 mm thick at 7 m, open from 6 to 8 m, and fills."""
+    """A floor of 10 × 10 m with a wall 240 mm thick at 7 m, and fills.
+
+    It is open from 3 to 3.5 m, as wide as a column, and from 6 to 7 m, as wide as a door.
+    """
     document = drawing()
-    rectangle(document.modelspace(), 0, 7000, 6000, 7240, layer="WALL")
-    rectangle(document.modelspace(), 8000, 7000, 10_000, 7240, layer="WALL")
+    for x0, x1 in ((0, 3000), (3500, 6000), (7000, 10_000)):
+        rectangle(document.modelspace(), x0, 7000, x1, 7240, layer="WALL")
     for corners in fills:
         hatch = document.modelspace().add_hatch(dxfattribs={"layer": layer})
         hatch.paths.add_polyline_path(corners)
@@ -38,42 +41,138 @@ def hall(*fills: Corners, layer: str = "PUB_HATCH", pattern: bool = False) -> Dr
     return document
 
 
+def row(width_mm: float, depth_mm: float, *, y: float = 2000, count: int = 3) -> list[Corners]:
+    """Equal rectangles, two metres apart."""
+    return [box(x, y, x + width_mm, y + depth_mm) for x in range(1000, 1000 + 2000 * count, 2000)]
+
+
 def kinds(plan: FloorPlan) -> list[Kind]:
     """The kinds of what comes from the layer of hatches."""
     return [obstacle.kind for obstacle in standing(plan, "PUB_HATCH")]
 
 
-def test_column_that_is_nothing_but_a_fill_stands_at_its_wall_and_is_said(tmp_path: Path) -> None:
-    plan = plan_of(hall(COLUMN), tmp_path)
+@pytest.mark.parametrize("turn_deg", [0.0, 30.0])
+@pytest.mark.parametrize("x_scale", [1.0, -1.0])
+def test_column_that_is_all_that_parts_two_walls_stands_and_is_said(
+    turn_deg: float, x_scale: float, tmp_path: Path
+) -> None:
+    document = hall(COLUMN)
+    matrix = Matrix44.scale(x_scale, 1, 1) @ Matrix44.z_rotate(math.radians(turn_deg))
+    transform.inplace(document.modelspace(), matrix)
+    plan = plan_of(document, tmp_path)
     assert kinds(plan) == [Kind.COLUMN]
-    assert plan.obstacle_region().area == 8000 * 240 + 500 * (500 - 240)
+    expected_mm2 = 8500 * 240 + 500 * 500
+    assert plan.obstacle_region().area == pytest.approx(expected_mm2, rel=1e-6)
     (finding,) = [finding for finding in plan.findings if finding.code == "fills-alone"]
     assert (finding.layer, bool(finding.handle)) == ("PUB_HATCH", True)
-    assert finding.at_mm == pytest.approx((4250, 7050), abs=250)
+    at = matrix.transform((3250, 7120))
+    assert finding.at_mm == pytest.approx((at.x, at.y), abs=250)
 
 
-@pytest.mark.parametrize("turn_deg", [0.0, 30.0])
-def test_piece_of_wall_that_is_nothing_but_a_fill_closes_the_wall(
-    turn_deg: float, tmp_path: Path
-) -> None:
-    document = hall(box(6000, 7000, 8000, 7240))
-    transform.inplace(document.modelspace(), Matrix44.z_rotate(math.radians(turn_deg)))
-    plan = plan_of(document, tmp_path)
+def test_piece_of_wall_that_closes_a_gap_narrower_than_a_doorway_stands(tmp_path: Path) -> None:
+    plan = plan_of(hall(box(3000, 7060, 3500, 7180)), tmp_path)
     assert kinds(plan) == [Kind.WALL]
-    assert plan.obstacle_region().area == pytest.approx(10_000 * 240, rel=1e-6)
 
 
-def test_square_fill_as_large_as_a_column_is_one_wherever_it_stands(tmp_path: Path) -> None:
-    assert kinds(plan_of(hall(box(2000, 2000, 2400, 2400)), tmp_path)) == [Kind.COLUMN]
+@pytest.mark.parametrize("times", [1, 2])
+def test_fill_at_which_lines_of_walls_end_stands(times: int, tmp_path: Path) -> None:
+    document = hall(box(4000, 3000, 4600, 3600))
+    for y in (3200, 3400) * times:
+        document.modelspace().add_line((0, y), (4000, y), dxfattribs={"layer": "WALL"})
+    assert kinds(plan_of(document, tmp_path)) == [Kind.COLUMN]
 
 
-def test_round_fill_as_large_as_a_column_is_one(tmp_path: Path) -> None:
+def test_fill_at_a_wall_that_goes_on_along_it_is_left_out_and_said(tmp_path: Path) -> None:
+    plan = plan_of(hall(box(4000, 6500, 4500, 7000)), tmp_path)
+    assert kinds(plan) == []
+    (said,) = [finding for finding in plan.findings if finding.code == "fills-left-out"]
+    assert (said.layer, bool(said.handle)) == ("PUB_HATCH", True)
+    assert said.at_mm == pytest.approx((4250, 6750), abs=250)
+
+
+@pytest.mark.parametrize("depth_mm", [240, 120])
+@pytest.mark.parametrize("door", ["swings", ""])
+def test_fill_of_a_doorway_leaves_it_open(door: str, depth_mm: float, tmp_path: Path) -> None:
+    document = hall(box(6000, 7000, 7000, 7000 + depth_mm))
+    if door:
+        on = {"layer": "DOOR"}
+        document.modelspace().add_arc((6000, 7060), 1000, 0, 90, dxfattribs=on)
+        document.modelspace().add_line((6000, 7060), (6000, 8060), dxfattribs=on)
+    plan = plan_of(document, tmp_path)
+    assert kinds(plan) == []
+    # a fill at a door needs no word
+    assert ("fills-left-out" in codes(plan)) is not bool(door)
+
+
+def test_fill_of_a_doorway_whose_jambs_are_loose_ends_leaves_it_open(tmp_path: Path) -> None:
+    document = hall(box(6000, 3000, 7000, 3240))
+    for y in (3000, 3240):
+        for x0, x1 in ((0, 6000), (7000, 10_000)):
+            document.modelspace().add_line((x0, y), (x1, y), dxfattribs={"layer": "WALL"})
+    assert kinds(plan_of(document, tmp_path)) == []
+
+
+def test_fills_of_three_doorways_are_no_columns(tmp_path: Path) -> None:
+    document = hall(*row(800, 240, y=3000))
+    for x0, x1 in ((0, 1000), (1800, 3000), (3800, 5000), (5800, 10_000)):
+        rectangle(document.modelspace(), x0, 3000, x1, 3240, layer="WALL")
+    assert kinds(plan_of(document, tmp_path)) == []
+
+
+def test_where_fills_colour_rooms_none_is_a_column(tmp_path: Path) -> None:
+    assert kinds(plan_of(hall(COLUMN, box(0, 0, 10_000, 6000)), tmp_path)) == []
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_square_fills_are_columns_where_three_equal_ones_stand(count: int, tmp_path: Path) -> None:
+    plan = plan_of(hall(*row(400, 400, count=count)), tmp_path)
+    assert kinds(plan) == [Kind.COLUMN] * (3 if count == 3 else 0)
+    assert ("fills-left-out" in codes(plan)) is (count == 2)
+
+
+def test_squares_of_other_sizes_are_no_equals(tmp_path: Path) -> None:
+    fills = [box(x, 2000, x + 400 + x / 100, 2400) for x in (1000, 3000, 5000)]
+    assert kinds(plan_of(hall(*fills), tmp_path)) == []
+
+
+def test_one_fill_drawn_three_times_is_one(tmp_path: Path) -> None:
+    assert kinds(plan_of(hall(*[box(1000, 2000, 1400, 2400)] * 3), tmp_path)) == []
+
+
+def test_round_fills_are_columns_where_three_equal_ones_stand(tmp_path: Path) -> None:
     document = hall()
-    hatch = document.modelspace().add_hatch(dxfattribs={"layer": "PUB_HATCH"})
-    hatch.paths.add_edge_path().add_arc((2000, 2000), 300)
-    (column,) = standing(plan_of(document, tmp_path), "PUB_HATCH")
-    assert column.kind is Kind.COLUMN
-    assert column.region().area == pytest.approx(math.pi * 300**2, rel=1e-3)
+    for x in (1000, 3000, 5000):
+        hatch = document.modelspace().add_hatch(dxfattribs={"layer": "PUB_HATCH"})
+        hatch.paths.add_edge_path().add_arc((x, 2000), 300)
+    columns = standing(plan_of(document, tmp_path), "PUB_HATCH")
+    assert len(columns) == 3
+    for column in columns:
+        assert column.kind is Kind.COLUMN
+        assert column.region().area == pytest.approx(math.pi * 300**2, rel=1e-3)
+
+
+@pytest.mark.parametrize("layer", ["FURNITURE", "SANITARY", "TEXT", "KITCHEN"])
+def test_fills_that_another_layer_outlines_are_no_columns(layer: str, tmp_path: Path) -> None:
+    document = hall(*row(1400, 700))
+    for (x0, y0), _, (x1, y1), _ in row(1400, 700):
+        rectangle(document.modelspace(), x0, y0, x1, y1, layer=layer)
+    plan = plan_of(document, tmp_path)
+    assert kinds(plan) == []
+    assert "fills-left-out" not in codes(plan)
+
+
+def test_fills_behind_texts_are_no_columns(tmp_path: Path) -> None:
+    document = hall(*row(1250, 300))
+    for (x, y), *_ in row(1250, 300):
+        document.modelspace().add_text("OFFICE", height=200).set_placement((x + 50, y + 50))
+    plan = plan_of(document, tmp_path)
+    assert kinds(plan) == []
+    assert "fills-left-out" not in codes(plan)
+
+
+def test_equal_stripes_that_end_at_a_wall_are_markings(tmp_path: Path) -> None:
+    plan = plan_of(hall(*row(120, 5000)), tmp_path)
+    assert kinds(plan) == []
 
 
 @pytest.mark.parametrize(
@@ -83,14 +182,14 @@ def test_round_fill_as_large_as_a_column_is_one(tmp_path: Path) -> None:
         box(2000, 2000, 2100, 2100),
         box(1000, 1000, 5000, 1240),
         box(0, 2000, 10_000, 7000),
-        box(1000, 6960, 1040, 7000),
+        box(3000, 7000, 3500, 7040),
     ],
-    ids=["an arrow", "a dot", "a strip by itself", "a room", "a speck at a wall"],
+    ids=["an arrow", "a dot", "a strip by itself", "a room", "a lining"],
 )
 def test_other_fills_are_left_out(corners: Corners, tmp_path: Path) -> None:
     plan = plan_of(hall(corners), tmp_path)
     assert kinds(plan) == []
-    assert "fills-alone" not in codes(plan)
+    assert {"fills-alone", "fills-left-out"}.isdisjoint(codes(plan))
 
 
 def test_pattern_is_left_out(tmp_path: Path) -> None:
@@ -103,7 +202,7 @@ def test_fill_of_furniture_is_left_out(tmp_path: Path) -> None:
 
 def test_fill_of_an_outlined_column_adds_nothing(tmp_path: Path) -> None:
     document = hall(COLUMN)
-    rectangle(document.modelspace(), 4000, 6800, 4500, 7300, layer="COLUMN")
+    rectangle(document.modelspace(), 3000, 6870, 3500, 7370, layer="COLUMN")
     assert kinds(plan_of(document, tmp_path)) == []
 
 

@@ -64,6 +64,15 @@ def marks_of(placed: Iterable[Placed], frame: Frame) -> list[Mark]:
     return found
 
 
+def places_of_texts(placed: Iterable[Placed], frame: Frame) -> list[Point]:
+    """Where a drawing says something, in millimetres of a frame."""
+    return [
+        _place(entity, frame)
+        for entity in placed
+        if _text(entity.entity).strip() and not not_finite(entity.entity)
+    ]
+
+
 def are_believed(marks: Sequence[Mark]) -> bool:
     """Whether a drawing marks its openings: one text alone may name a machine or a room."""
     doors_at = {mark.at for mark in marks if mark.is_door}

@@ -24,7 +24,7 @@ from satAOI_adapters.dxf_read.doors import (
     spans,
 )
 from satAOI_adapters.dxf_read.features import Feature
-from satAOI_adapters.dxf_read.fills import fills_alone, solid_fills
+from satAOI_adapters.dxf_read.fills import fills_alone
 from satAOI_adapters.dxf_read.floor import floor_of
 from satAOI_adapters.dxf_read.floor_layers import outer_edges
 from satAOI_adapters.dxf_read.glazing import between_rooms, with_marked_doors
@@ -182,7 +182,7 @@ def _standing(drawn: Drawn, terms: Terms, drawing: Survey) -> Standing:
     columns = parts[SOLID_KINDS.index(Kind.COLUMN)].obstacles
     parts.append(_walls(by_kind[Kind.WALL], drawn, columns, terms, drawing))
     known = [obstacle for part in parts for obstacle in part.obstacles]
-    parts.append(fills_alone(solid_fills(drawing.seen, terms.frame), drawn, known, terms))
+    parts.append(fills_alone(drawing, drawn, known, terms))
     return Standing(
         tuple(obstacle for part in parts for obstacle in part.obstacles),
         tuple(finding for part in parts for finding in part.findings),
