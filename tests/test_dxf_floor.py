@@ -1,6 +1,7 @@
 """The floor of a drawing: what its layers show of it, held against what the walls enclose."""
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,8 @@ from shapely.geometry import Polygon, box
 from satAOI_geo.errors import DrawingError
 from satAOI_geo.plan import Finding, FloorPlan
 from tests.drawings import codes, drawing, plan_of, rectangle, standing
+
+Outline = Callable[..., None]
 
 HALL = box(-200, -200, 20_200, 10_200)
 OFFICE = box(0, 6000, 5100, 10_000)
@@ -83,6 +86,7 @@ def test_gate_is_closed_where_most_walls_would_lie_beside_the_floor(
     assert floor_of(plan).equals(HALL)
     finding = said(plan, "wide-opening-closed")
     assert f"{gate_mm / 1000:.2f} m" in finding.message
+    assert f"openings of up to {gate_mm / 1000:g} m" in said(plan, "floor-inferred").message
     assert finding.at_mm is not None
     assert abs(finding.at_mm[1] - 5000) < 1
 
@@ -169,6 +173,7 @@ def test_tiles_of_one_room_are_not_the_whole_floor(layer: str, tmp_path: Path) -
     finding = said(plan, "floor-not-shown")
     assert (finding.layer, bool(finding.handle)) == (layer, True)
     assert "36.00 of the 72.11 m²" in finding.message
+    assert [other.code for other in plan.findings if other.layer == layer] == ["floor-not-shown"]
 
 
 def test_outline_of_one_room_is_not_the_whole_floor(tmp_path: Path) -> None:
@@ -177,6 +182,7 @@ def test_outline_of_one_room_is_not_the_whole_floor(tmp_path: Path) -> None:
     plan = plan_of(document, tmp_path)
     assert floor_of(plan).equals(ALL_ROOMS)
     assert free_m2(plan) == pytest.approx(72.114)
+    assert "room-outline" not in codes(plan)
 
 
 def test_balcony_on_a_floor_layer_is_not_the_floor_inside(tmp_path: Path) -> None:
@@ -193,6 +199,7 @@ def test_step_drawn_on_a_floor_layer_that_is_not_believed_stops_the_robot(tmp_pa
     plan = plan_of(document, tmp_path)
     assert floor_of(plan).equals(ALL_ROOMS)
     assert standing(plan, "A-FLOR")
+    assert said(plan, "unclassified").layer == "A-FLOR"
     assert free_m2(plan) == pytest.approx(72.114 - 2.4)
 
 
@@ -240,7 +247,7 @@ def test_rooms_tiled_one_by_one_are_joined_by_their_doorway(tmp_path: Path) -> N
     plan = plan_of(document, tmp_path)
     whole = shapely.union_all([box(0, 0, 6000, 6000), DOORWAY, box(6120, 0, 12_120, 6000)])
     assert floor_of(plan).equals(whole)
-    assert "1 doorways" in said(plan, "doorways-joined").message
+    assert "1 doorway between" in said(plan, "doorways-joined").message
 
 
 def test_room_that_a_layer_of_floors_leaves_out_is_said_with_its_place(tmp_path: Path) -> None:
@@ -285,6 +292,8 @@ def test_threshold_on_a_floor_layer_does_not_hide_the_floor(tmp_path: Path) -> N
     finding = said(plan, "floor-not-shown")
     assert finding.at_mm == (6000.0, 2000.0)
     assert "--layers" in finding.remedy
+    assert finding.message.startswith("nothing of the floor is shown on 'A-FLOR' but open lines")
+    assert "unclassified-left-out" not in codes(plan)
 
 
 def test_lines_of_a_plan_on_a_layer_of_floors_are_refused(tmp_path: Path) -> None:
@@ -307,3 +316,95 @@ def test_outline_within_that_of_the_floor_is_cut_out_and_said(layer: str, tmp_pa
     assert "4.00 m²" in finding.message
     assert finding.at_mm is not None
     assert hole.contains(shapely.Point(finding.at_mm))
+
+
+SLAB, HOLE = (0, 0, 20_000, 10_000), (8000, 4000, 10_000, 6000)
+
+
+def four_lines(
+    space: Modelspace, x0: float, y0: float, x1: float, y1: float, *, layer: str
+) -> None:
+    """A rectangle of loose lines."""
+    corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+    for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
+        space.add_line(start, end, dxfattribs={"layer": layer})
+
+
+@pytest.mark.parametrize("outline", [rectangle, four_lines])
+@pytest.mark.parametrize("layer", ["FLOOR", "S-SLAB-EDGE"])
+def test_hole_of_loose_lines_is_cut_out_and_said(
+    outline: Outline, layer: str, tmp_path: Path
+) -> None:
+    document = drawing(floor=False)
+    outline(document.modelspace(), *SLAB, layer=layer)
+    four_lines(document.modelspace(), *HOLE, layer=layer)
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(*SLAB).difference(box(*HOLE)))
+    assert "4.00 m²" in said(plan, "floor-hole").message
+
+
+@pytest.mark.parametrize("outline", [rectangle, four_lines])
+def test_hole_drawn_closed_and_by_lines_is_one_hole(outline: Outline, tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    outline(document.modelspace(), *SLAB, layer="FLOOR")
+    rectangle(document.modelspace(), *HOLE, layer="FLOOR")
+    four_lines(document.modelspace(), *HOLE, layer="FLOOR")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(*SLAB).difference(box(*HOLE)))
+    assert said(plan, "floor-hole").message.startswith("1 outline within")
+
+
+def test_level_in_a_pit_of_loose_lines_is_floor(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    four_lines(document.modelspace(), *SLAB, layer="FLOOR")
+    four_lines(document.modelspace(), 4000, 2000, 14_000, 8000, layer="FLOOR")
+    four_lines(document.modelspace(), *HOLE, layer="FLOOR")
+    assert plan_of(document, tmp_path).floor.area == 200e6 - 60e6 + 4e6
+
+
+def test_circle_of_two_loose_arcs_in_the_floor_is_a_hole(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    rectangle(document.modelspace(), *SLAB, layer="FLOOR")
+    for start_deg in (0, 180):
+        document.modelspace().add_arc(
+            (9000, 5000), 1000, start_deg, start_deg + 180, dxfattribs={"layer": "FLOOR"}
+        )
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == pytest.approx(200e6 - math.pi * 1e6, rel=1e-4)
+    assert said(plan, "floor-hole").message.startswith("1 outline within")
+
+
+def test_many_small_holes_of_loose_lines_are_no_tiles(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    four_lines(document.modelspace(), *SLAB, layer="FLOOR")
+    for i in range(30):
+        x, y = 1000 + 1800 * (i % 10), 2000 + 2000 * (i // 10)
+        four_lines(document.modelspace(), x, y, x + 500, y + 500, layer="FLOOR")
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == 200e6 - 30 * 0.25e6
+    assert said(plan, "floor-hole").message.startswith("30 outlines within")
+
+
+@pytest.mark.parametrize("outline", [rectangle, four_lines])
+def test_panels_between_joints_that_reach_the_edge_of_the_slab_are_floor(
+    outline: Outline, tmp_path: Path
+) -> None:
+    document = drawing(floor=False)
+    space = document.modelspace()
+    outline(space, *SLAB, layer="SLAB")
+    for x in (5000, 10_000, 15_000):
+        space.add_line((x, 0), (x, 10_000), dxfattribs={"layer": "SLAB"})
+    for y in (3000, 6000):
+        space.add_line((0, y), (20_000, y), dxfattribs={"layer": "SLAB"})
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(*SLAB))
+    assert "floor-hole" not in codes(plan)
+
+
+def test_fill_over_all_the_floor_does_not_close_its_holes(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    rectangle(document.modelspace(), *SLAB, layer="FLOOR")
+    rectangle(document.modelspace(), *HOLE, layer="FLOOR")
+    pattern(document.modelspace(), *SLAB, layer="FLOOR")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(*SLAB).difference(box(*HOLE)))

@@ -22,6 +22,7 @@ from satAOI_adapters.dxf_read.linework import WALL_MM
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.shapes import TIE_MM, is_thin, tidy
 from satAOI_adapters.dxf_read.terms import Terms
+from satAOI_adapters.dxf_read.wording import are, counted
 from satAOI_adapters.layers import without_xref_prefix
 from satAOI_geo.errors import EmptyPlanError
 from satAOI_geo.plan import Finding, Kind, Obstacle, Region, polygons_in
@@ -174,11 +175,12 @@ def _with_doorways(shown: Shown, free: BaseGeometry, terms: Terms) -> Floor:
 
 def _inferred(within: Enclosed, obstacles: Sequence[Obstacle], terms: Terms) -> Floor:
     if not within.region.is_empty:
+        closed_mm = OPENING_MM if within.opening is None else within.opening.length
         finding = Finding(
             "floor-inferred",
             "no layer shows the floor: it is what the walls enclose, "
             f"{within.region.area / 1e6:.2f} m² with them, openings of up to "
-            f"{OPENING_MM / 1000:g} m closed",
+            f"{max(OPENING_MM, round(closed_mm, -1)) / 1000:g} m closed",
             "draw its outline on a layer FLOOR",
         )
         return Floor(within.region, "inferred", (finding, *_of_openings(within, terms)))
@@ -271,10 +273,16 @@ def _in_part(shown: Shown, free: BaseGeometry, terms: Terms) -> Iterator[Finding
 
 
 def _finish(shown: Shown, free: BaseGeometry, terms: Terms) -> Finding:
+    is_open = shown.region.is_empty and not shown.holes
+    what = (
+        f"nothing of the floor is shown on {shown.layers} but open lines, as of thresholds and "
+        "steps"
+        if is_open
+        else f"{_shares(shown, free)}, as finishes of single rooms and edges of steps do"
+    )
     return said(
         "floor-not-shown",
-        f"{_shares(shown, free)}, as finishes of single rooms and edges of steps do: the floor is "
-        "taken as all that walls enclose",
+        f"{what}: the floor is taken as all that walls enclose",
         "draw the floor's outline on a layer FLOOR, or say in a file for --layers that the layer "
         "is the floor, if it ends there",
         shown.first,
@@ -285,8 +293,9 @@ def _finish(shown: Shown, free: BaseGeometry, terms: Terms) -> Finding:
 def _joined_rooms(joints: Sequence[Polygon], shown: Shown, terms: Terms) -> Finding:
     return said(
         "doorways-joined",
-        f"the floor is shown room by room on {shown.layers}: {len(joints)} doorways between the "
-        f"rooms, {sum(joint.area for joint in joints) / 1e6:.2f} m² together, are taken as floor",
+        f"the floor is shown room by room on {shown.layers}: {counted(len(joints), 'doorway')} "
+        f"between the rooms, {sum(joint.area for joint in joints) / 1e6:.2f} m² together, "
+        f"{are(len(joints))} taken as floor",
         "draw the floor's outline on a layer FLOOR if the rooms are apart",
         shown.first,
         terms.place(middle(joints[0])),

@@ -1,8 +1,7 @@
 """What layers of floors show: outlines, fills, and loose lines that enclose."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 import shapely
@@ -12,8 +11,8 @@ from shapely.geometry.base import BaseGeometry
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.linework import NEAR_MISS_MM, WALL_MM, Network, network
-from satAOI_adapters.dxf_read.obstacles import outlines_of
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
+from satAOI_adapters.dxf_read.panels import Outline, Panels, nested, panels_of
 from satAOI_adapters.dxf_read.shapes import (
     by_chords,
     even_odd,
@@ -24,14 +23,9 @@ from satAOI_adapters.dxf_read.shapes import (
     tidy,
 )
 from satAOI_adapters.dxf_read.terms import Terms
+from satAOI_adapters.dxf_read.wording import are, counted
 from satAOI_geo.errors import DrawingError
-from satAOI_geo.plan import Circle, Finding, Obstacle, Region, as_region
-
-MANY_TILES: Final = 20
-"""So many faces between loose lines of a floor layer are tiles, or panels of a slab."""
-
-TILES_WIDE: Final = 3.0
-"""A face in which a disc as wide as so many tiles fits is no tile: a pool, a void."""
+from satAOI_geo.plan import Circle, Finding, Obstacle, Region, polygons_in
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,34 +60,6 @@ class Shown:
         return ", ".join(f"'{name}'" for name in names)
 
 
-def nested(polygons: Sequence[Polygon]) -> tuple[Region, list[Polygon]]:
-    """Outlines as areas: one inside another is a hole in it, and so on inwards.
-
-    Returns:
-        The areas, and the outlines that cut holes.
-    """
-    area: BaseGeometry = Polygon()
-    drawn: list[Polygon] = []
-    holes: list[Polygon] = []
-    for polygon in sorted(polygons, key=lambda outline: outline.area, reverse=True):
-        if any(_is_copy(polygon, other) for other in drawn):
-            continue
-        drawn.append(polygon)
-        # what lies wholly in the area cuts a hole into it, anything else adds to it
-        if polygon.area > 0 and area.buffer(CLOSE_GAPS_MM).contains(polygon):
-            area = area.difference(polygon)
-            holes.append(polygon)
-        else:
-            area = area.union(polygon)
-    return as_region(area), holes
-
-
-def _is_copy(polygon: Polygon, other: Polygon) -> bool:
-    """Whether two outlines, of which the other is the larger, are drawn one over the other."""
-    is_as_large = other.area - polygon.area <= other.length * CLOSE_GAPS_MM
-    return is_as_large and bool(polygon.buffer(CLOSE_GAPS_MM).contains(other))
-
-
 def shown_by(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], terms: Terms) -> Shown:
     """What is drawn on floor layers shows.
 
@@ -102,9 +68,10 @@ def shown_by(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], terms: Ter
         obstacles: At which tiles end.
         terms: The terms of the reading.
     """
-    outlines: list[tuple[Polygon, Feature]] = []
+    outlines: list[Outline] = []
     filled: list[BaseGeometry] = []
     lines: list[LineString] = []
+    owners: list[Feature] = []
     curved: list[Polygon] = []
     for feature in drawn:
         if feature.is_area:
@@ -112,23 +79,26 @@ def shown_by(drawn: Sequence[Feature], obstacles: Sequence[Obstacle], terms: Ter
             continue
         for path in feature.paths:
             if path.closed:
-                outlines.extend((outline, feature) for outline in room(path))
+                outlines.extend(Outline(area, feature) for area in room(path))
             else:
                 lines.append(middle_line(path))
+                owners.append(feature)
                 curved.extend(slivers(path))
     joined = network(lines, terms.gap_mm)
-    panels, left_out = _panels(joined, obstacles)
-    # chords reach over curves that bulge inwards
-    loops = shapely.union_all(panels).difference(shapely.union_all(curved))
-    areas, holes = nested([outline for outline, _ in outlines])
-    owners = {id(outline): feature for outline, feature in outlines}
+    panels = panels_of(joined, obstacles)
+    outlines.extend(_drawn_loosely(panels, lines, owners, curved))
+    areas, holes = nested(outlines)
+    cut_out = tuple(hole.area for hole in holes)
+    tiles = shapely.union_all(panels.tiles).difference(shapely.union_all(curved))
+    # a fill of all the floor goes over its holes, too
+    others = shapely.union_all([tiles, *filled]).difference(shapely.union_all(cut_out))
     return Shown(
         tuple(drawn),
-        tidy(shapely.union_all([areas, loops, *filled])),
-        tuple(holes),
+        tidy(areas.union(others)),
+        cut_out,
         joined,
-        _cut_out(holes, owners, terms),
-        (*_no_tiles(left_out, drawn[0]), *_joined_gaps(joined, drawn[0], terms)),
+        _cut_out(holes, terms),
+        (*_no_tiles(panels.left_out, drawn[0]), *_joined_gaps(joined, drawn[0], terms)),
     )
 
 
@@ -159,25 +129,28 @@ def _regions(feature: Feature) -> list[BaseGeometry]:
     ]
 
 
-def _panels(joined: Network, obstacles: Sequence[Obstacle]) -> tuple[list[Polygon], list[Polygon]]:
-    """What loose lines on a floor layer enclose: panels, and what tiles leave out.
+def _drawn_loosely(
+    panels: Panels,
+    lines: Sequence[LineString],
+    owners: Sequence[Feature],
+    curved: Sequence[Polygon],
+) -> Iterator[Outline]:
+    """The outlines that loose lines draw.
 
-    Tiles end at walls: these close the faces along them.
+    Args:
+        panels: What the lines enclose.
+        lines: The lines.
+        owners: What draws each.
+        curved: Slivers around those that are curves: chords reach over curves that bulge inwards.
     """
-    faces = joined.faces()
-    if len(faces) < MANY_TILES:
-        return faces, []
-    widest_mm = TILES_WIDE * float(np.median([face.area for face in faces])) ** 0.5
-    walls = [
-        *outlines_of(obstacles),
-        *(o.shape for o in obstacles if isinstance(o.shape, LineString)),
-    ]
-    joints = shapely.STRtree(joined.lines)
-    cut = network([*joined.lines, *walls]).faces()
-    near, _ = joints.query([f.boundary for f in cut], predicate="dwithin", distance=CLOSE_GAPS_MM)
-    faces = [cut[i] for i in np.unique(near)]
-    tiles = [face for face in faces if is_thin(face, widest_mm)]
-    return tiles, [face for face in faces if not is_thin(face, widest_mm)]
+    tree, bows = shapely.STRtree(lines), shapely.STRtree(curved)
+    for group, around in panels.groups:
+        at_rim = tree.query(around.exterior, predicate="dwithin", distance=CLOSE_GAPS_MM)
+        near = bows.geometries[bows.query(around, predicate="intersects")]
+        for area in polygons_in([around.difference(shapely.union_all(near))]):
+            # chords and slivers leave crumbs between them
+            if not is_thin(area, CLOSE_GAPS_MM):
+                yield Outline(area, owners[min(at_rim)], group)
 
 
 def open_outline(shown: Shown, terms: Terms) -> DrawingError:
@@ -227,28 +200,21 @@ def middle(part: Polygon) -> Point:
     return spot.x, spot.y
 
 
-def _cut_out(
-    holes: Sequence[Polygon], owners: Mapping[int, Feature], terms: Terms
-) -> tuple[Finding, ...]:
-    """What is to be said about outlines within others.
-
-    Args:
-        holes: These outlines, the largest first.
-        owners: Whose each is, by its identity.
-        terms: The terms of the reading.
-    """
+def _cut_out(holes: Sequence[Outline], terms: Terms) -> tuple[Finding, ...]:
+    """What is to be said about outlines within others, the largest first."""
     if not holes:
         return ()
-    owner = owners[id(holes[0])]
+    largest = holes[0]
+    area_m2 = shapely.union_all([hole.area for hole in holes]).area / 1e6
     return (
         said(
             "floor-hole",
-            f"{len(holes)} outlines within that of the floor, the largest on layer "
-            f"'{owner.placed.layer}', {shapely.union_all(holes).area / 1e6:.2f} m² together, are "
-            "taken as holes or steps, and are no floor",
+            f"{counted(len(holes), 'outline')} within that of the floor, the largest on layer "
+            f"'{largest.feature.placed.layer}', {area_m2:.2f} m² together, "
+            f"{are(len(holes))} taken as hole or step, and {are(len(holes))} no floor",
             "draw what is level floor on another layer",
-            owner,
-            terms.place(middle(holes[0])),
+            largest.feature,
+            terms.place(middle(largest.area)),
         ),
     )
 
@@ -260,8 +226,9 @@ def _no_tiles(left_out: Sequence[Polygon], feature: Feature) -> tuple[Finding, .
     return (
         Finding(
             "floor-without-tiles",
-            f"{len(left_out)} spaces between the tiles of layer '{feature.placed.layer}', "
-            f"{area_m2:.2f} m² together, are much larger than a tile and taken as no floor",
+            f"{counted(len(left_out), 'space')} between the tiles of layer "
+            f"'{feature.placed.layer}', {area_m2:.2f} m² together, {are(len(left_out))} much "
+            "larger than a tile and taken as no floor",
             "draw the floor's outline as a closed polyline on a layer FLOOR",
             layer=feature.placed.layer,
         ),
@@ -274,8 +241,8 @@ def _joined_gaps(joined: Network, feature: Feature, terms: Terms) -> tuple[Findi
     return (
         Finding(
             "gap-closed",
-            f"{joined.n_joined} line ends of the floor's outline were joined over gaps of up to "
-            f"{terms.gap_mm:g} mm",
+            f"{counted(joined.n_joined, 'line end')} of the floor's outline joined over gaps of "
+            f"up to {terms.gap_mm:g} mm",
             layer=feature.placed.layer,
         ),
     )

@@ -1,7 +1,7 @@
 """From a drawing to a floor plan: survey, obstacles, floor, frame."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final, TypeVar
@@ -25,7 +25,7 @@ from satAOI_adapters.dxf_read.doors import (
 )
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.fills import fills_alone
-from satAOI_adapters.dxf_read.floor import floor_of
+from satAOI_adapters.dxf_read.floor import Floor, floor_of
 from satAOI_adapters.dxf_read.floor_layers import outer_edges
 from satAOI_adapters.dxf_read.glazing import between_rooms, with_marked_doors
 from satAOI_adapters.dxf_read.marks import marks_of
@@ -40,7 +40,7 @@ from satAOI_adapters.dxf_read.swings import parted, swings
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_adapters.dxf_read.thresholds import without_thresholds
 from satAOI_adapters.dxf_read.trenches import trenches
-from satAOI_adapters.dxf_read.unclassified import unclassified
+from satAOI_adapters.dxf_read.unclassified import LEFT_OUT, ROOM, unclassified
 from satAOI_adapters.dxf_read.windows import window_findings, windows
 from satAOI_adapters.layers import KINDS, Meaning
 from satAOI_geo.errors import InputError
@@ -116,7 +116,7 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
             *between_rooms(drawn, floor.region, standing.obstacles, frame),
             *floor.findings,
             *between.findings,
-            *others.findings,
+            *_news(others, floor),
             *start_findings,
         ),
         floor_source=floor.source,
@@ -246,6 +246,18 @@ def _doors_among_walls(count: int) -> tuple[Finding, ...]:
 
 def _lines(drawn: Sequence[Feature]) -> list[LineString]:
     return [middle_line(path) for feature in drawn for path in feature.paths]
+
+
+def _news(others: Standing, floor: Floor) -> Iterator[Finding]:
+    """The findings about nameless shapes, but those that the floor's say already.
+
+    Where floor layers are not believed, that is said; their lines, patterns and outlines of rooms
+    need no second word, what stops the robot does.
+    """
+    layers = {feature.placed.layer for feature in floor.others}
+    for finding in others.findings:
+        if finding.layer not in layers or finding.code not in (ROOM, LEFT_OUT):
+            yield finding
 
 
 def _on(floor: Region, obstacles: Sequence[Obstacle]) -> tuple[Obstacle, ...]:

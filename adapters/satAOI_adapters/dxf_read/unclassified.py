@@ -34,6 +34,9 @@ NAMELESS, CROSSED, ROOM = "unclassified", "crossed", "room-outline"
 DASHED, CLOUD = "dashed", "revision-cloud"
 """What closed shapes are taken for, as findings call it."""
 
+LEFT_OUT: Final = "unclassified-left-out"
+"""What findings call lines and patterns that are left out."""
+
 SAID: Final = {
     NAMELESS: (
         "closed shapes {where}, are taken as obstacles: the layer's name says nothing",
@@ -183,7 +186,7 @@ def _left_out(loose: Sequence[Feature], floor: Region, frame: Frame) -> list[Fin
         first, line = next(iter(entities.values()))
         found.append(
             Finding(
-                "unclassified-left-out",
+                LEFT_OUT,
                 f"{_counted(len(entities) - n_patterns, n_patterns)} on layer '{layer}' on the "
                 "floor are left out: the layer's name says nothing",
                 f"{SAY_WHAT} if they stop the robot",
