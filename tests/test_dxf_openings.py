@@ -256,3 +256,26 @@ def test_door_away_from_any_wall_cuts_nothing_and_nothing_is_said(tmp_path: Path
     plan = plan_of(document, tmp_path)
     assert plan.obstacle_region().area == 10_000 * 200
     assert plan.findings == ()
+
+
+@pytest.mark.parametrize("shift_mm", [0.0, 4.0])
+def test_door_drawn_twice_over_a_wall_is_said_once(shift_mm: float, tmp_path: Path) -> None:
+    document = drawing()
+    outline(document.modelspace())
+    for layer in ("A-DOOR", "DOOR"):
+        swing(document.modelspace(), layer)
+    transform.translate(document.modelspace().query('*[layer=="DOOR"]'), (shift_mm, 0, 0))
+    assert codes(plan_of(document, tmp_path)).count("door-over-wall") == 1
+
+
+def test_two_leaves_over_a_wall_are_one_door(tmp_path: Path) -> None:
+    document = drawing()
+    space = document.modelspace()
+    outline(space)
+    swing(space, "DOOR")
+    space.add_arc((5800, 5200), 900, 90, 180, dxfattribs={"layer": "DOOR"})
+    space.add_line((5800, 5200), (5800, 6100), dxfattribs={"layer": "DOOR"})
+    plan = plan_of(document, tmp_path)
+    assert in_drawing(plan).equals(WALL.difference(box(4000, 5000, 5800, 5200)))
+    (said,) = [finding for finding in plan.findings if finding.code == "door-over-wall"]
+    assert "1800 mm wide" in said.message

@@ -200,3 +200,22 @@ def test_trenches_are_the_same_however_the_plan_lies(change: object, tmp_path: P
     assert expected_mm2 == HALL_MM2 - 20_000 * (1000 + 1300)
     change(document)  # type: ignore[operator]
     assert free_mm2(plan_of(document, tmp_path)) == pytest.approx(expected_mm2, rel=1e-9)
+
+
+def test_lines_of_a_trench_that_go_on_a_little_beyond_it_are_not_said_to_enclose_nothing(
+    tmp_path: Path,
+) -> None:
+    document = hall(((0, 4000), (5280, 4000)), ((0, 5000), (5280, 5000)))
+    document.modelspace().add_line((5000, 3800), (5000, 5200), dxfattribs={"layer": "TRENCH"})
+    plan = plan_of(document, tmp_path)
+    assert free_mm2(plan) == HALL_MM2 - 5000 * 1000
+    assert told(plan, "trench-filled").message.startswith("1 space between")
+    assert "lines-open" not in codes(plan)
+
+
+def test_line_of_which_most_bounds_nothing_is_said(tmp_path: Path) -> None:
+    document = hall(((0, 4000), (12_000, 4000)), ((0, 5000), (5000, 5000)))
+    document.modelspace().add_line((5000, 4000), (5000, 5000), dxfattribs={"layer": "TRENCH"})
+    plan = plan_of(document, tmp_path)
+    assert free_mm2(plan) == HALL_MM2 - 5000 * 1000
+    assert told(plan, "lines-open").message.startswith("1 open line on layer 'TRENCH'")

@@ -41,6 +41,9 @@ PLACES: Final = (0.25, 0.5, 0.75)
 BESIDE_MM: Final = 100.0
 """And how far beyond its ends, for the jambs of an opening."""
 
+COPY_MM: Final = 10.0
+"""Doors whose ends are no farther apart are one, drawn twice."""
+
 OPEN_RAD: Final = tuple(math.radians(turn_deg) for turn_deg in (45, 90, 135, -45, -90, -135))
 """By how much doors are turned whose leaf stands open, away from the wall."""
 
@@ -78,6 +81,20 @@ class Span:
         (x, y), (end_x, end_y) = self.start, self.end
         way_x, way_y = (end_x - x) / width_mm, (end_y - y) / width_mm
         return x + along_mm * way_x - left_mm * way_y, y + along_mm * way_y + left_mm * way_x
+
+    def is_copy(self, other: "Span") -> bool:
+        """Whether another door is drawn at the same place, be it from the other end."""
+        ends = (other.start, other.end), (other.end, other.start)
+        return any(
+            max(math.dist(self.start, start), math.dist(self.end, end)) <= COPY_MM
+            for start, end in ends
+        )
+
+    def meets(self, other: "Span") -> bool:
+        """Whether the tips of two leaves of one door meet."""
+        apart_mm = math.dist(self.start, other.start)
+        is_straight = apart_mm >= self.width_mm + other.width_mm - LEAF_SLACK_MM
+        return is_straight and math.dist(self.end, other.end) <= LEAF_SLACK_MM
 
     def turned(self) -> "Span":
         """The same door on the other side of its hinge."""
@@ -192,7 +209,8 @@ def with_openings(
     """
     tree = shapely.STRtree([wall.region() for wall in walls.obstacles])
     openings: list[Polygon] = []
-    findings: list[Finding] = []
+    opened: list[Span] = []
+    closed: list[Span] = []
     for spans in (*map(shut, doors), *map(middles, _alone(masks, doors))):
         crossings = [_crossing(span, tree) for span in spans]
         over = _over(crossings)
@@ -201,23 +219,48 @@ def with_openings(
         if len(over) == 1:
             ((span, depth),) = over
             openings.append(span.opening(depth))
-            findings.append(_opened(span, terms))
+            opened.append(span)
         elif any(crossing.depths for crossing in crossings):
-            findings.append(_left_closed(spans[0], terms))
+            closed.append(spans[0])
     still = still.apart_from(doors)
     for outline in still.outlines:
         for span, depth in _over(_crossings(outline, tree)):
             if outline.buffer(ABREAST_MM).contains(span.opening(depth)):
                 openings.append(span.opening(depth))
-                findings.append(_opened(span, terms))
+                opened.append(span)
     for symbol in still.symbols:
         crossings = _crossings(symbol, tree)
         is_shut = not any(_is_free(crossing, tree) for crossing in crossings)
         if is_shut and not any(map(symbol.intersects, openings)):
-            findings.extend(_left_closed(span, terms) for span, _ in _over(crossings))
+            closed.extend(span for span, _ in _over(crossings))
     ajar = [leaf for leaf in still.leaves if not any(map(leaf.intersects, openings))]
-    findings.extend(_left_closed(span, terms) for span in _at_whole_walls(ajar, tree))
+    closed.extend(_at_whole_walls(ajar, tree))
+    findings = (
+        *(_opened(span, terms) for span in _whole(_once(opened))),
+        *(_left_closed(span, terms) for span in _once(closed)),
+    )
     return Standing(_cut(walls.obstacles, openings), (*walls.findings, *findings))
+
+
+def _once(spans: Sequence[Span]) -> list[Span]:
+    """Doors without copies."""
+    kept: list[Span] = []
+    for span in spans:
+        if not any(map(span.is_copy, kept)):
+            kept.append(span)
+    return kept
+
+
+def _whole(leaves: Sequence[Span]) -> list[Span]:
+    """Doors from hinge to hinge where two leaves meet."""
+    doors: list[Span] = []
+    for leaf in leaves:
+        meeting = [i for i, door in enumerate(doors) if leaf.meets(door)]
+        if meeting:
+            doors[meeting[0]] = Span(doors[meeting[0]].start, leaf.start)
+        else:
+            doors.append(leaf)
+    return doors
 
 
 def shut(door: Swing) -> list[Span]:

@@ -23,6 +23,7 @@ from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.plans import Drawn
 from satAOI_adapters.dxf_read.shapes import GeometryArray, band, is_thin, middle_line
 from satAOI_adapters.dxf_read.terms import Terms
+from satAOI_adapters.dxf_read.wording import are, counted
 from satAOI_adapters.layers import KINDS
 from satAOI_geo.plan import BoolArray, Finding, FloatArray, Kind, Obstacle, Region, polygons_in
 
@@ -48,6 +49,9 @@ BETWEEN: Final = 0.75
 
 OPEN: Final = 0.1
 """Share of the rim of a space that open lines must be; more than a line that ends at it."""
+
+LOOSE: Final = 0.5
+"""A line of which more than this share bounds nothing is said; ends may go on beyond a space."""
 
 PLACE_MM: Final = 1.0
 """How exactly the widest place of a space is looked for."""
@@ -115,8 +119,10 @@ def trenches(drawn: Drawn, known: Sequence[Obstacle], floor: Region, terms: Term
     spaces = _spaces(faces, open_ones, lines[is_covered], beside_mm)
     obstacles = _solid(spaces, _near(lines[is_open], others), beside_mm)
     on_floor = shapely.intersection(lines[is_open], floor)
-    is_rim = _covered(on_floor, [*known, *obstacles])
-    loose = [stroke for stroke, is_in in zip(open_ones, is_rim, strict=True) if not is_in]
+    bounded = _solid_parts([*known, *obstacles])
+    bounding_nothing_mm = shapely.length(shapely.difference(on_floor, bounded))
+    is_loose = bounding_nothing_mm > LOOSE * shapely.length(on_floor)
+    loose = [open_ones[i] for i in np.flatnonzero(is_loose)]
     return Standing(obstacles, (*_filled(obstacles, terms), *_left_open(loose, terms)))
 
 
@@ -141,10 +147,15 @@ def _lines(path: Path, width_mm: float) -> list[LineString]:
 
 def _covered(lines: GeometryArray, obstacles: Sequence[Obstacle]) -> BoolArray:
     """Which of the lines add nothing to the solids among obstacles."""
+    return np.asarray(shapely.covers(_solid_parts(obstacles), lines), dtype=np.bool_)
+
+
+def _solid_parts(obstacles: Sequence[Obstacle]) -> BaseGeometry:
+    """Where the solids among obstacles are, and what is drawn along them."""
     solid = shapely.union_all([o.region() for o in obstacles if _is_solid(o)])
-    grown = solid.buffer(COVERED_MM)
+    grown: BaseGeometry = solid.buffer(COVERED_MM)
     shapely.prepare(grown)
-    return np.asarray(shapely.covers(grown, lines), dtype=np.bool_)
+    return grown
 
 
 def _is_solid(obstacle: Obstacle) -> bool:
@@ -263,10 +274,10 @@ def _filled(obstacles: Sequence[Obstacle], terms: Terms) -> Iterator[Finding]:
         area_m2 = sum(obstacle.region().area for obstacle in own) / 1e6
         yield Finding(
             "trench-filled",
-            f"{len(own)} spaces between open lines of layer '{layer}', {area_m2:.2f} m² together, "
-            "closed by walls, other solids or the edge of the floor and nowhere wider than "
-            f"{WIDEST_MM[largest.kind]:g} mm, are taken as solid ({largest.kind}), the largest at "
-            f"({x_mm:.1f}, {y_mm:.1f}) mm",
+            f"{counted(len(own), 'space')} between open lines of layer '{layer}', {area_m2:.2f} m² "
+            "together, closed by walls, other solids or the edge of the floor and nowhere wider "
+            f"than {WIDEST_MM[largest.kind]:g} mm, {are(len(own))} taken as solid "
+            f"({largest.kind}), the largest at ({x_mm:.1f}, {y_mm:.1f}) mm",
             "if one of them is free floor, draw what stands beside it as closed outlines",
             layer=layer,
             handle=largest.handle,
@@ -284,10 +295,10 @@ def _left_open(strokes: Sequence[Stroke], terms: Terms) -> Iterator[Finding]:
         start_mm, end_mm = terms.frame.to_drawing_mm(ends)
         yield Finding(
             "lines-open",
-            f"{len(own)} open lines on layer '{layer}' ({longest.kind}) enclose nothing that can "
-            "be told from floor: they stop the robot where they are drawn, not beside them; the "
-            f"longest runs from ({start_mm[0]:.1f}, {start_mm[1]:.1f}) to "
-            f"({end_mm[0]:.1f}, {end_mm[1]:.1f}) mm",
+            f"{counted(len(own), 'open line')} on layer '{layer}' ({longest.kind}), with "
+            "nothing enclosed that can be told from floor: the robot is stopped where they are "
+            f"drawn, not beside them; the longest runs from ({start_mm[0]:.1f}, "
+            f"{start_mm[1]:.1f}) to ({end_mm[0]:.1f}, {end_mm[1]:.1f}) mm",
             "close the outline in the drawing, or give --close-gaps if it ends short of a wall, "
             "if the robot must keep out of what is beside it",
             layer=layer,
