@@ -580,6 +580,19 @@ def test_nothing_is_told_by_its_look_where_walls_or_floor_are_named(
     assert "walls-by-look" not in codes(plan_of(document, tmp_path))
 
 
+@pytest.mark.parametrize(("width", "solid_mm2"), [(3000, 0.0), (1200, 1200 * 4000.0)])
+def test_pattern_wider_than_walls_on_their_layer_is_that_of_a_floor_and_said(
+    width: int, solid_mm2: float, tmp_path: Path
+) -> None:
+    document = house(opening_mm=900.0)
+    hatch = document.modelspace().add_hatch(dxfattribs={"layer": "WALL"})
+    hatch.set_pattern_fill("NET", scale=100)
+    hatch.paths.add_polyline_path([(0, 200), (width, 200), (width, 4200), (0, 4200)])
+    plan = plan_of(document, tmp_path)
+    assert plan.free_region().area == pytest.approx(INSIDE.area + 900 * 200 - solid_mm2)
+    assert ("wide-pattern" in codes(plan)) == (not solid_mm2)
+
+
 def test_pipes_among_foundations_are_no_walls_by_their_look(tmp_path: Path) -> None:
     document = house(opening_mm=900.0, layer="XYZ")
     rectangle(document.modelspace(), 4000, 2000, 5300, 3300, layer="EQUIPMENT")

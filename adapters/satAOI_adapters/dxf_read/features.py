@@ -25,6 +25,12 @@ class Feature:
     is_area: bool = False
     width_mm: float = 0.0
 
+    @property
+    def is_pattern(self) -> bool:
+        """Whether it is a hatch that draws a pattern of lines rather than filling."""
+        is_hatch = self.is_area and self.placed.kind == "HATCH"
+        return is_hatch and not self.placed.entity.dxf.solid_fill
+
     def box(self) -> tuple[float, float, float, float]:
         """Left, bottom, right, top of a box around its paths."""
         spots = [spot for path in self.paths for piece in path.pieces for spot in piece.spots()]

@@ -89,9 +89,10 @@ def walls(
     """Walls from fills, bands, outlines and lines.
 
     A closed outline no wider than a wall is solid. A wider one is the face of a wall around a
-    room, and only its line counts. The space between faces is filled where it is closed and
-    nowhere wider than a wall; on layers that are named as walls also where it is twice as wide,
-    lies between rooms and no door is drawn at it. A room never is.
+    room, and only its line counts; a pattern twice as wide is that of a room's floor. The space
+    between faces is filled where it is closed and nowhere wider than a wall; on layers that are
+    named as walls also where it is twice as wide, lies between rooms and no door is drawn at it.
+    A room never is.
 
     Args:
         features: What is drawn on wall layers.
@@ -102,9 +103,14 @@ def walls(
     """
     obstacles: list[Obstacle] = []
     lines: list[tuple[Path, Feature]] = []
+    patterns: list[tuple[Shape, Feature]] = []
     for feature in features:
         if feature.is_area or feature.width_mm:
-            obstacles.extend(_obstacles(area_of(feature), Kind.WALL, feature))
+            shapes = area_of(feature)
+            wide = [s for s in shapes if feature.is_pattern and not is_thin(_region(s), THICK_MM)]
+            patterns.extend((shape, feature) for shape in wide)
+            solid = [shape for shape in shapes if shape not in wide]
+            obstacles.extend(_obstacles(solid, Kind.WALL, feature))
             continue
         for path in feature.paths:
             is_narrow = path.closed and not is_wide(path, WALL_MM)
@@ -113,8 +119,12 @@ def walls(
                 obstacles.extend(_obstacles(shapes, Kind.WALL, feature))
             else:
                 lines.append((path, feature))
+    if not lines and not obstacles:
+        # walls drawn by nothing but wide patterns are what these cover
+        patterns, obstacles = [], [o for s, f in patterns for o in _obstacles([s], Kind.WALL, f)]
+    left_out = tuple(_wide_patterns(patterns, terms))
     if not lines:
-        return Standing(tuple(obstacles))
+        return Standing(tuple(obstacles), left_out)
     outlines = outlines_of([*obstacles, *columns])
     drawn_lines = middle_lines(path for path, _ in lines)
     joined = with_wall_ends(network([*drawn_lines, *outlines], terms.gap_mm))
@@ -130,10 +140,11 @@ def walls(
     inside = _insides([*thin, *thick], lines)
     drawn = [o for path, feature in lines for o in _obstacles(traces(path), Kind.WALL, feature)]
     findings = (
+        *left_out,
         *_wide_outlines(lines, thick),
         *_filled(thin),
         *_thick(thick, terms),
-        *_gaps("wall", joined, terms),
+        *_gaps("walls", joined, terms),
     )
     return Standing((*obstacles, *drawn, *inside), findings)
 
@@ -166,7 +177,7 @@ def _loops(layer: str, paths: Sequence[tuple[Path, Feature]], kind: Kind, terms:
     for i in np.setdiff1d(np.arange(len(lines)), covered):
         path, feature = paths[i]
         obstacles.extend(_obstacles(traces(path), kind, feature))
-    return Standing(tuple(obstacles), _gaps(layer, joined, terms))
+    return Standing(tuple(obstacles), _gaps(f"layer '{layer}'", joined, terms))
 
 
 def _spaces(faces: Sequence[Polygon], widest_mm: float, known: BaseGeometry) -> list[Polygon]:
@@ -214,6 +225,10 @@ def _insides(spaces: Sequence[Polygon], lines: Sequence[tuple[Path, Feature]]) -
     ]
 
 
+def _region(shape: Shape) -> BaseGeometry:
+    return shape.polygon() if isinstance(shape, Circle) else shape
+
+
 def _is_wall_thick(shape: Shape) -> bool:
     if isinstance(shape, Circle):
         return 2 * shape.radius_mm <= WALL_MM
@@ -255,6 +270,25 @@ def _wide_outlines(
         )
 
 
+def _wide_patterns(patterns: Sequence[tuple[Shape, Feature]], terms: Terms) -> Iterable[Finding]:
+    if patterns:
+        regions = [_region(shape) for shape, _ in patterns]
+        area_m2 = float(shapely.area(shapely.union_all(regions))) / 1e6
+        spot = regions[0].representative_point()
+        x_mm, y_mm = terms.frame.to_drawing_mm([(spot.x, spot.y)])[0]
+        placed = patterns[0][1].placed
+        yield Finding(
+            "wide-pattern",
+            f"patterns on wall layers that are wider than {THICK_MM:g} mm, {area_m2:.2f} m² "
+            f"together, the first at ({x_mm:.1f}, {y_mm:.1f}) mm, are taken as those of rooms: "
+            "they are left out",
+            "fill what is a wall (HATCH of pattern SOLID)",
+            layer=placed.layer,
+            handle=placed.handle,
+            at_mm=(float(x_mm), float(y_mm)),
+        )
+
+
 def _filled(thin: Sequence[Polygon]) -> Iterable[Finding]:
     if thin:
         yield Finding(
@@ -284,13 +318,13 @@ def _area_m2(spaces: Sequence[Polygon]) -> float:
 
 
 def _gaps(what: str, joined: Network, terms: Terms) -> tuple[Finding, ...]:
-    """What was joined and what was left open, on one layer or for one kind."""
+    """What was joined and what was left open, on one layer or among all walls."""
     findings = []
     if joined.n_joined:
         findings.append(
             Finding(
                 "gap-closed",
-                f"{joined.n_joined} line ends of '{what}' were joined over gaps of up to "
+                f"{joined.n_joined} line ends of {what} were joined over gaps of up to "
                 f"{terms.gap_mm:g} mm",
             )
         )
@@ -299,7 +333,7 @@ def _gaps(what: str, joined: Network, terms: Terms) -> tuple[Finding, ...]:
         findings.append(
             Finding(
                 "gap-open",
-                f"lines of '{what}' miss each other by {gap.width_mm:.1f} mm, from "
+                f"lines of {what} miss each other by {gap.width_mm:.1f} mm, from "
                 f"({start_mm[0]:.1f}, {start_mm[1]:.1f}) to ({end_mm[0]:.1f}, {end_mm[1]:.1f}) mm",
                 "if they were meant to meet, join them in the drawing or give --close-gaps "
                 f"{math.ceil(gap.width_mm)}",

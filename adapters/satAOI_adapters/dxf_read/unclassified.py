@@ -169,7 +169,7 @@ def _beside(openings: Sequence[Obstacle], things: Iterable[Thing]) -> list[Thing
 def _is_open(feature: Feature) -> bool:
     """Whether a feature is a pattern or has open lines: neither counts as a thing."""
     if feature.is_area:
-        return _is_pattern(feature) or _is_arrow(feature)
+        return feature.is_pattern or _is_arrow(feature)
     return not feature.width_mm and not all(path.closed for path in feature.paths)
 
 
@@ -182,7 +182,7 @@ def _left_out(loose: Sequence[Feature], floor: Region, frame: Frame) -> list[Fin
         by_layer[placed.layer].setdefault(id(placed), (loose[i], drawn[i]))
     found = []
     for layer, entities in by_layer.items():
-        n_patterns = sum(_is_pattern(feature) for feature, _ in entities.values())
+        n_patterns = sum(feature.is_pattern for feature, _ in entities.values())
         first, line = next(iter(entities.values()))
         found.append(
             Finding(
@@ -217,11 +217,6 @@ def _closed(feature: Feature) -> list[Thing]:
         for shape in shapes
         if not isinstance(shape, LineString)
     ]
-
-
-def _is_pattern(feature: Feature) -> bool:
-    entity = feature.placed.entity
-    return feature.is_area and feature.placed.kind == "HATCH" and not entity.dxf.solid_fill
 
 
 def _is_arrow(feature: Feature) -> bool:
