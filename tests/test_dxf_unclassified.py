@@ -80,6 +80,16 @@ def test_closet_with_a_door_in_it_is_a_room(tmp_path: Path) -> None:
     assert said(plan, "room-outline") == ["XYZ"]
 
 
+def test_machine_of_lines_drawn_twice_is_one_machine(tmp_path: Path) -> None:
+    document = hall()
+    sides = list(zip(SQUARE, [*SQUARE[1:], SQUARE[0]], strict=True))
+    add_lines(document, *sides, *((end, start) for start, end in sides), layer="XYZ")
+    plan = plan_of(document, tmp_path)
+    (thing,) = standing(plan, "XYZ")
+    assert thing.shape.equals(box(4000, 4000, 6000, 6000))
+    assert "unclassified-left-out" not in codes(plan)
+
+
 @pytest.mark.parametrize("inner_mm", [0, 60])
 def test_copy_or_frame_of_a_pit_makes_no_room_of_it(inner_mm: int, tmp_path: Path) -> None:
     left, right = 4000 + inner_mm, 6500 - inner_mm

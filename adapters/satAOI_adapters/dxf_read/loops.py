@@ -38,17 +38,27 @@ class Loop:
 
 def loops(features: Sequence[Feature]) -> list[Loop]:
     """The outlines that open lines without width draw, layer by layer."""
-    by_layer: defaultdict[str, list[tuple[Path, Feature]]] = defaultdict(list)
+    by_layer: defaultdict[str, defaultdict[object, list[tuple[Path, Feature]]]]
+    by_layer = defaultdict(lambda: defaultdict(list))
     for feature in features:
         if feature.is_area or feature.width_mm:
             continue
         for path in feature.paths:
             if not path.closed:
-                by_layer[feature.placed.layer].append((path, feature))
-    return [loop for lines in by_layer.values() for loop in _of_layer(lines)]
+                by_layer[feature.placed.layer][_line(path)].append((path, feature))
+    return [loop for lines in by_layer.values() for loop in _of_layer(list(lines.values()))]
 
 
-def _of_layer(lines: Sequence[tuple[Path, Feature]]) -> list[Loop]:
+def _line(path: Path) -> object:
+    """What a straight line and its copies have in common, whichever way they are drawn."""
+    if len(path.pieces) > 1 or not path.is_straight:
+        return id(path)
+    return tuple(sorted(tuple(np.round(end, 3)) for end in (path.start, path.end)))
+
+
+def _of_layer(copies: Sequence[Sequence[tuple[Path, Feature]]]) -> list[Loop]:
+    """The outlines of one layer, of lines with their copies."""
+    lines = [same[0] for same in copies]
     ends = np.array([end for path, _ in lines for end in (path.start, path.end)])
     pairs = Spots(ends).pairs(CLOSE_GAPS_MM)
     corner = linked(pairs, len(ends))
@@ -62,7 +72,7 @@ def _of_layer(lines: Sequence[tuple[Path, Feature]]) -> list[Loop]:
     _, first = np.unique(corner, return_index=True)
     met = ends[first][corner].reshape(-1, 2, 2)
     return [
-        Loop(shape, tuple(lines[i][1] for i in members))
+        Loop(shape, tuple(feature for i in members for _, feature in copies[i]))
         for members in (part.tolist() for part in np.split(order, starts))
         if members
         for shape in _inside([lines[i][0] for i in members], met[members])
