@@ -115,9 +115,10 @@ def test_room_between_its_outline_and_the_outer_one_is_free() -> None:
 
 
 def test_doors_over_walls_open_the_room_behind_them() -> None:
-    # walls of single lines run through under its 13 doors, one of them drawn carelessly
+    # walls of single lines run through under its 12 doors, one of them drawn carelessly and
+    # one with two leaves
     plan = plan_of("d09")
-    assert sum(finding.code == "door-over-wall" for finding in plan.findings) == 13
+    assert sum(finding.code == "door-over-wall" for finding in plan.findings) == 12
     free = plan.free_region()
     assert max(part.area for part in polygons_in([free])) > 0.9 * free.area
 
