@@ -44,7 +44,7 @@ def told(plan: FloorPlan, code: str) -> Finding:
     return finding
 
 
-@pytest.mark.parametrize("width_mm", [300.0, 1200.0, 3000.0])
+@pytest.mark.parametrize("width_mm", [300.0, 1200.0, 1500.0])
 def test_trench_of_two_lines_from_wall_to_wall_is_solid_and_said(
     width_mm: float, tmp_path: Path
 ) -> None:
@@ -135,7 +135,7 @@ def test_curved_trench_is_solid(tmp_path: Path) -> None:
     assert "lines-open" not in codes(plan)
 
 
-@pytest.mark.parametrize("width_mm", [1000.0, 2000.0])
+@pytest.mark.parametrize("width_mm", [1000.0, 1400.0])
 def test_trench_between_lines_with_a_width_is_solid(width_mm: float, tmp_path: Path) -> None:
     document = hall()
     for line in across(4000, 4000 + width_mm):

@@ -14,7 +14,6 @@ from typing import Final
 from satAOI_adapters.dxf_read.estimate import WALLS, beside
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.meaning import Seen
-from satAOI_adapters.dxf_read.plans import n_swings
 from satAOI_adapters.layers import Meaning, Verdict
 from satAOI_geo.plan import Finding
 
@@ -25,7 +24,7 @@ ENOUGH_MM: Final = 8000.0
 """And so long they must be together: the faces of a room's shorter walls."""
 
 IN_WALLS: Final = frozenset({Meaning.DOOR, Meaning.WINDOW, Meaning.COLUMN, Meaning.ROOM})
-"""Meanings of which one on any layer tells that there are walls; so does a door that swings."""
+"""Meanings of which one on any layer tells that there are walls."""
 
 BOUNDING: Final = frozenset({Meaning.WALL, Meaning.FLOOR})
 """Meanings of which one on any layer makes looks unnecessary."""
@@ -41,8 +40,7 @@ def with_lookalikes(
         mm_per_unit: Millimetres in a drawing unit.
     """
     meanings = {entity.verdict.meaning for entity, _ in near}
-    is_building = meanings & IN_WALLS or any(n_swings(feature) for _, feature in near)
-    if meanings & BOUNDING or not is_building:
+    if meanings & BOUNDING or not meanings & IN_WALLS:
         return list(near), ()
     unknown: defaultdict[str, list[Feature]] = defaultdict(list)
     for entity, feature in near:

@@ -28,12 +28,12 @@ from satAOI_adapters.layers import KINDS
 from satAOI_geo.plan import BoolArray, Finding, FloatArray, Kind, Obstacle, Region, polygons_in
 
 WIDEST_MM: Final = {
-    Kind.HOLE: 3000.0,
-    Kind.EQUIPMENT: 3000.0,
+    Kind.HOLE: 1500.0,
+    Kind.EQUIPMENT: 700.0,
     Kind.COLUMN: 1500.0,
     Kind.EMBEDDED: 700.0,
 }
-"""Widest space between lines of a kind that is solid; between embedded rails lies floor."""
+"""Widest space between lines of a kind that is solid; between gutters or rails lies floor."""
 
 KERB_MM: Final = 250.0
 """Lines no farther apart may be the wall or the frame of a trench, not a trench of its own."""
