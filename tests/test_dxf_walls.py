@@ -580,6 +580,23 @@ def test_nothing_is_told_by_its_look_where_walls_or_floor_are_named(
     assert "walls-by-look" not in codes(plan_of(document, tmp_path))
 
 
+def test_arrow_on_a_stair_misses_nothing(tmp_path: Path) -> None:
+    document = drawing()
+    space = document.modelspace()
+    treads = [((x, 1000), (x, 2000)) for x in range(1000, 4000, 280)]
+    sides = [((1000, y), (treads[-1][0][0], y)) for y in (1000, 2000)]
+    arrow = [
+        ((1100, 1500), (3500, 1500)),
+        ((3400, 1450), (3500, 1500)),
+        ((3400, 1550), (3500, 1500)),
+    ]
+    for start, end in [*treads, *sides, *arrow]:
+        space.add_line(start, end, dxfattribs={"layer": "STAIR"})
+    plan = plan_of(document, tmp_path)
+    assert "gap-open" not in codes(plan)
+    assert plan.obstacle_region().area == pytest.approx((treads[-1][0][0] - 1000) * 1000)
+
+
 @pytest.mark.parametrize(("width", "solid_mm2"), [(3000, 0.0), (1200, 1200 * 4000.0)])
 def test_pattern_wider_than_walls_on_their_layer_is_that_of_a_floor_and_said(
     width: int, solid_mm2: float, tmp_path: Path

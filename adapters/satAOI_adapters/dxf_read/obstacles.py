@@ -3,7 +3,7 @@
 import math
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -177,7 +177,10 @@ def _loops(layer: str, paths: Sequence[tuple[Path, Feature]], kind: Kind, terms:
     for i in np.setdiff1d(np.arange(len(lines)), covered):
         path, feature = paths[i]
         obstacles.extend(_obstacles(traces(path), kind, feature))
-    return Standing(tuple(obstacles), _gaps(f"layer '{layer}'", joined, terms))
+    # an arrow on a stair misses nothing
+    solid = shapely.union_all(enclosed)
+    gaps = tuple(gap for gap in joined.gaps if not solid.contains(LineString((gap.start, gap.end))))
+    return Standing(tuple(obstacles), _gaps(f"layer '{layer}'", replace(joined, gaps=gaps), terms))
 
 
 def _spaces(faces: Sequence[Polygon], widest_mm: float, known: BaseGeometry) -> list[Polygon]:
