@@ -408,3 +408,13 @@ def test_fill_over_all_the_floor_does_not_close_its_holes(tmp_path: Path) -> Non
     pattern(document.modelspace(), *SLAB, layer="FLOOR")
     plan = plan_of(document, tmp_path)
     assert floor_of(plan).equals(box(*SLAB).difference(box(*HOLE)))
+
+
+def test_open_outline_around_a_lone_column_is_no_floor(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    document.modelspace().add_lwpolyline(
+        [(0, 0), (9000, 0), (9000, 9000), (0, 9000)], dxfattribs={"layer": "FLOOR"}
+    )
+    rectangle(document.modelspace(), 1000, 1000, 1300, 1300, layer="COLUMN")
+    with pytest.raises(DrawingError, match="is open"):
+        plan_of(document, tmp_path)

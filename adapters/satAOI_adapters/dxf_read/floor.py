@@ -101,7 +101,7 @@ def floor_of(
 
 def _is_all(region: Region, bounds: Sequence[BaseGeometry]) -> bool:
     """Whether one outline leaves out no room: of the walls' hull no more than the walls."""
-    if not bounds or not isinstance(region, Polygon):
+    if not bounds or region.is_empty or not isinstance(region, Polygon):
         return False
     rest = shapely.union_all(bounds).convex_hull.difference(region)
     return rest.is_empty or is_thin(rest, WALL_MM)
