@@ -177,10 +177,10 @@ def test_a_worker_killed_on_the_way_changes_no_result(
                     process.kill()
                     killed.append(process.pid)
 
-    killer = threading.Thread(target=kill_the_first_that_works)
+    killer = threading.Thread(target=kill_the_first_that_works, daemon=True)
     killer.start()
     assert batch_of("plans/**/*.dxf", "-q", "--again", "--workers", "1") == BAD
-    killer.join()
+    assert killed
     assert rows_of(rooms) == before
 
 
@@ -223,6 +223,7 @@ batch.run_plan(batch.Task("a", "b", "c", (), {str(tmp_path)!r}, "", ""))
 """
     caller = subprocess.Popen([sys.executable, "-c", start])
     while not (tmp_path / "begun").exists():
+        assert caller.poll() is None
         time.sleep(0.05)
     runs = psutil.Process(caller.pid).children()
     caller.kill()
