@@ -74,6 +74,11 @@ class Circle:
 Shape: TypeAlias = Polygon | LineString | Circle
 
 
+def geometry_of(shape: Shape) -> Polygon | LineString:
+    """A shape as shapely sees it; a circle as a polygon of the same area."""
+    return shape.polygon() if isinstance(shape, Circle) else shape
+
+
 @dataclass(frozen=True, slots=True)
 class Obstacle:
     """One thing the robot must not touch: a closed set in the plan's frame.
@@ -93,7 +98,7 @@ class Obstacle:
 
     def region(self) -> BaseGeometry:
         """The shape as shapely sees it; a circle as a polygon of the same area."""
-        return self.shape.polygon() if isinstance(self.shape, Circle) else self.shape
+        return geometry_of(self.shape)
 
     def label(self) -> str:
         """The obstacle as a person can find it in the drawing."""

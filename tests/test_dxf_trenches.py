@@ -2,7 +2,7 @@
 
 import math
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -194,11 +194,13 @@ def shuffled(document: Drawing) -> None:
 
 
 @pytest.mark.parametrize("change", [turned, mirrored, shuffled])
-def test_trenches_are_the_same_however_the_plan_lies(change: object, tmp_path: Path) -> None:
+def test_trenches_are_the_same_however_the_plan_lies(
+    change: Callable[[Drawing], None], tmp_path: Path
+) -> None:
     document = hall(*across(1000, 2000, 4000, 4150, 5150, 5300), [(15_000, 10_000), (15_000, 9000)])
     expected_mm2 = free_mm2(plan_of(document, tmp_path))
     assert expected_mm2 == HALL_MM2 - 20_000 * (1000 + 1300)
-    change(document)  # type: ignore[operator]
+    change(document)
     assert free_mm2(plan_of(document, tmp_path)) == pytest.approx(expected_mm2, rel=1e-9)
 
 

@@ -25,7 +25,7 @@ from satAOI_adapters.dxf_read.shapes import (
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_adapters.dxf_read.wording import are, counted
 from satAOI_geo.errors import DrawingError
-from satAOI_geo.plan import Circle, Finding, Obstacle, Region, polygons_in
+from satAOI_geo.plan import Finding, Obstacle, Region, geometry_of, polygons_in
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,10 +123,7 @@ def outer_edges(drawn: Sequence[Feature]) -> list[LineString]:
 
 
 def _regions(feature: Feature) -> list[BaseGeometry]:
-    return [
-        shape.polygon() if isinstance(shape, Circle) else shape
-        for shape in even_odd(feature.paths, outside=False)
-    ]
+    return [geometry_of(shape) for shape in even_odd(feature.paths, outside=False)]
 
 
 def _drawn_loosely(

@@ -30,7 +30,7 @@ from satAOI_adapters.layers import (
     without_xref_prefix,
 )
 from satAOI_geo.errors import SatAoiError, UnitError
-from satAOI_geo.plan import Circle, Finding, FloorPlan, Frame, Kind, Source
+from satAOI_geo.plan import Finding, FloorPlan, Frame, Kind, Source, geometry_of
 
 if TYPE_CHECKING:
     from shapely.geometry import LineString
@@ -230,7 +230,7 @@ def _covered(feature: Feature) -> list[BaseGeometry]:
         shapes = area_of(feature)
     else:
         shapes = [s for path in feature.paths if path.closed for s in shapes_of(path)]
-    return [shape.polygon() if isinstance(shape, Circle) else shape for shape in shapes]
+    return [geometry_of(shape) for shape in shapes]
 
 
 def _sketch(

@@ -35,7 +35,7 @@ from satAOI_adapters.dxf_read.shapes import (
 )
 from satAOI_adapters.dxf_read.swings import LEAST_LEAF_MM
 from satAOI_adapters.dxf_read.terms import Terms
-from satAOI_geo.plan import Circle, Finding, Kind, Obstacle, Shape, polygons_in
+from satAOI_geo.plan import Circle, Finding, Kind, Obstacle, Shape, geometry_of, polygons_in
 
 COVERED_MM: Final = 1e-3
 """A line this close to a solid adds nothing to it."""
@@ -101,27 +101,7 @@ def walls(
         doors: The lines of doors.
         terms: The terms of the reading.
     """
-    obstacles: list[Obstacle] = []
-    lines: list[tuple[Path, Feature]] = []
-    patterns: list[tuple[Shape, Feature]] = []
-    for feature in features:
-        if feature.is_area or feature.width_mm:
-            shapes = area_of(feature)
-            wide = [s for s in shapes if feature.is_pattern and not is_thin(_region(s), THICK_MM)]
-            patterns.extend((shape, feature) for shape in wide)
-            solid = [shape for shape in shapes if shape not in wide]
-            obstacles.extend(_obstacles(solid, Kind.WALL, feature))
-            continue
-        for path in feature.paths:
-            is_narrow = path.closed and not is_wide(path, WALL_MM)
-            shapes = shapes_of(path) if is_narrow else []
-            if shapes and all(_is_wall_thick(shape) for shape in shapes):
-                obstacles.extend(_obstacles(shapes, Kind.WALL, feature))
-            else:
-                lines.append((path, feature))
-    if not lines and not obstacles:
-        # walls drawn by nothing but wide patterns are what these cover
-        patterns, obstacles = [], [o for s, f in patterns for o in _obstacles([s], Kind.WALL, f)]
+    obstacles, lines, patterns = _sorted(features)
     left_out = tuple(_wide_patterns(patterns, terms))
     if not lines:
         return Standing(tuple(obstacles), left_out)
@@ -147,6 +127,36 @@ def walls(
         *_gaps("walls", joined, terms),
     )
     return Standing((*obstacles, *drawn, *inside), findings)
+
+
+def _sorted(
+    features: Sequence[Feature],
+) -> tuple[list[Obstacle], list[tuple[Path, Feature]], list[tuple[Shape, Feature]]]:
+    """What on wall layers is solid by itself, the lines besides, and patterns of rooms."""
+    obstacles: list[Obstacle] = []
+    lines: list[tuple[Path, Feature]] = []
+    patterns: list[tuple[Shape, Feature]] = []
+    for feature in features:
+        if feature.is_area or feature.width_mm:
+            shapes = area_of(feature)
+            wide = [
+                s for s in shapes if feature.is_pattern and not is_thin(geometry_of(s), THICK_MM)
+            ]
+            patterns.extend((shape, feature) for shape in wide)
+            solid = [shape for shape in shapes if shape not in wide]
+            obstacles.extend(_obstacles(solid, Kind.WALL, feature))
+            continue
+        for path in feature.paths:
+            is_narrow = path.closed and not is_wide(path, WALL_MM)
+            shapes = shapes_of(path) if is_narrow else []
+            if shapes and all(_is_wall_thick(shape) for shape in shapes):
+                obstacles.extend(_obstacles(shapes, Kind.WALL, feature))
+            else:
+                lines.append((path, feature))
+    if not lines and not obstacles:
+        # walls drawn by nothing but wide patterns are what these cover
+        patterns, obstacles = [], [o for s, f in patterns for o in _obstacles([s], Kind.WALL, f)]
+    return obstacles, lines, patterns
 
 
 def area_of(feature: Feature) -> list[Shape]:
@@ -228,10 +238,6 @@ def _insides(spaces: Sequence[Polygon], lines: Sequence[tuple[Path, Feature]]) -
     ]
 
 
-def _region(shape: Shape) -> BaseGeometry:
-    return shape.polygon() if isinstance(shape, Circle) else shape
-
-
 def _is_wall_thick(shape: Shape) -> bool:
     if isinstance(shape, Circle):
         return 2 * shape.radius_mm <= WALL_MM
@@ -275,10 +281,10 @@ def _wide_outlines(
 
 def _wide_patterns(patterns: Sequence[tuple[Shape, Feature]], terms: Terms) -> Iterable[Finding]:
     if patterns:
-        regions = [_region(shape) for shape, _ in patterns]
+        regions = [geometry_of(shape) for shape, _ in patterns]
         area_m2 = float(shapely.area(shapely.union_all(regions))) / 1e6
         spot = regions[0].representative_point()
-        x_mm, y_mm = terms.frame.to_drawing_mm([(spot.x, spot.y)])[0]
+        x_mm, y_mm = terms.place((spot.x, spot.y))
         placed = patterns[0][1].placed
         yield Finding(
             "wide-pattern",
@@ -288,7 +294,7 @@ def _wide_patterns(patterns: Sequence[tuple[Shape, Feature]], terms: Terms) -> I
             "fill what is a wall (HATCH of pattern SOLID)",
             layer=placed.layer,
             handle=placed.handle,
-            at_mm=(float(x_mm), float(y_mm)),
+            at_mm=(x_mm, y_mm),
         )
 
 
@@ -305,14 +311,14 @@ def _filled(thin: Sequence[Polygon]) -> Iterable[Finding]:
 def _thick(thick: Sequence[Polygon], terms: Terms) -> Iterable[Finding]:
     if thick:
         spot = thick[0].representative_point()
-        x_mm, y_mm = terms.frame.to_drawing_mm([(spot.x, spot.y)])[0]
+        x_mm, y_mm = terms.place((spot.x, spot.y))
         yield Finding(
             "wall-thick",
             f"{len(thick)} closed spaces between wall lines, {_area_m2(thick):.2f} m² together, "
             f"{WALL_MM:g} to {THICK_MM:g} mm wide and without a door, are taken as thick walls, "
             f"the first at ({x_mm:.1f}, {y_mm:.1f}) mm",
             "break the wall lines at the door if one of them is a room",
-            at_mm=(float(x_mm), float(y_mm)),
+            at_mm=(x_mm, y_mm),
         )
 
 

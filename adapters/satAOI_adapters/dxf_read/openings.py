@@ -273,10 +273,8 @@ def as_one(spans: Sequence[Span]) -> Iterator[Span]:
     tips = shapely.STRtree([Spot(span.end) for span in spans])
     near = tips.query(tips.geometries, predicate="dwithin", distance=LEAF_SLACK_MM)
     for i, k in near.T.tolist():
-        one, other = spans[i], spans[k]
-        across_mm = math.dist(one.start, other.start)
-        if i < k and across_mm >= one.width_mm + other.width_mm - LEAF_SLACK_MM:
-            yield Span(one.start, other.start)
+        if i < k and spans[i].meets(spans[k]):
+            yield Span(spans[i].start, spans[k].start)
 
 
 def _alone(places: Sequence[GeometryT], doors: Sequence[Swing]) -> tuple[GeometryT, ...]:
@@ -409,7 +407,7 @@ def _beside(shape: LineString | Polygon, free: BaseGeometry) -> list[Shape]:
 
 
 def _opened(span: Span, terms: Terms) -> Finding:
-    x_mm, y_mm = _hinge(span, terms)
+    x_mm, y_mm = terms.place(span.start)
     return Finding(
         "door-over-wall",
         f"a door at ({x_mm:.1f}, {y_mm:.1f}) mm lies over a wall that goes on under it: the wall "
@@ -420,7 +418,7 @@ def _opened(span: Span, terms: Terms) -> Finding:
 
 
 def _left_closed(span: Span, terms: Terms) -> Finding:
-    x_mm, y_mm = _hinge(span, terms)
+    x_mm, y_mm = terms.place(span.start)
     return Finding(
         "door-in-wall",
         f"a door at ({x_mm:.1f}, {y_mm:.1f}) mm lies over walls, and where they are open is not "
@@ -428,9 +426,3 @@ def _left_closed(span: Span, terms: Terms) -> Finding:
         "break the wall in the drawing",
         at_mm=(x_mm, y_mm),
     )
-
-
-def _hinge(span: Span, terms: Terms) -> Point:
-    """Where a door starts, in the drawing's axes."""
-    x_mm, y_mm = terms.frame.to_drawing_mm([span.start])[0]
-    return float(x_mm), float(y_mm)

@@ -270,7 +270,7 @@ def _filled(obstacles: Sequence[Obstacle], terms: Terms) -> Iterator[Finding]:
     for layer, own in by_layer.items():
         largest = max(own, key=lambda obstacle: obstacle.region().area)
         spot = largest.region().representative_point()
-        ((x_mm, y_mm),) = terms.frame.to_drawing_mm([(spot.x, spot.y)])
+        x_mm, y_mm = terms.place((spot.x, spot.y))
         area_m2 = sum(obstacle.region().area for obstacle in own) / 1e6
         yield Finding(
             "trench-filled",
@@ -281,7 +281,7 @@ def _filled(obstacles: Sequence[Obstacle], terms: Terms) -> Iterator[Finding]:
             "if one of them is free floor, draw what stands beside it as closed outlines",
             layer=layer,
             handle=largest.handle,
-            at_mm=(float(x_mm), float(y_mm)),
+            at_mm=(x_mm, y_mm),
         )
 
 

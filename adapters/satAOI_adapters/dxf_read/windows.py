@@ -113,7 +113,7 @@ def _like_windows(firsts: Sequence[Feature], terms: Terms) -> Finding:
 
 def _finding(firsts: Sequence[Feature], terms: Terms, are_taken: str, remedy: str) -> Finding:
     placed = firsts[0].placed
-    x_mm, y_mm = terms.frame.to_drawing_mm([firsts[0].paths[0].start])[0]
+    x_mm, y_mm = terms.place(firsts[0].paths[0].start)
     return Finding(
         "window-on-door-layer",
         f"{LINES} or more lines abreast from jamb to jamb on door layer '{placed.layer}' "
@@ -121,7 +121,7 @@ def _finding(firsts: Sequence[Feature], terms: Terms, are_taken: str, remedy: st
         remedy,
         layer=placed.layer,
         handle=placed.handle,
-        at_mm=(float(x_mm), float(y_mm)),
+        at_mm=(x_mm, y_mm),
     )
 
 

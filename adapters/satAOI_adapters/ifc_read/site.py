@@ -20,7 +20,7 @@ from satAOI_adapters.ifc_read.names import printable
 from satAOI_adapters.ifc_read.placement import world_matrix
 from satAOI_adapters.ifc_read.prisms import View
 from satAOI_adapters.ifc_read.profiles import Units
-from satAOI_geo.plan import Circle, Finding, Shape
+from satAOI_geo.plan import Finding, Shape, geometry_of
 
 Begin: TypeAlias = Callable[[entity_instance], None]
 """Called before an element is read."""
@@ -72,7 +72,7 @@ class Standing:
 
     def parts(self) -> list[BaseGeometry]:
         """Its shapes as shapely sees them."""
-        return [s.polygon() if isinstance(s, Circle) else s for s in self.shapes]
+        return [geometry_of(shape) for shape in self.shapes]
 
     def region(self) -> BaseGeometry:
         """Its shapes as one."""
