@@ -1,13 +1,18 @@
 """Settings of all tests.
 
 Every run draws the same examples, however slow the machine; kernels are compiled beforehand and
-kept where the program keeps them, so that no run of it says that it compiles.
+kept where the program keeps them, so that no run of it says that it compiles. A run that is
+interrupted stops even where the tests were started in the background, which a shell lets no
+interrupt reach.
 """
+
+import signal
 
 from hypothesis import settings
 
 from satAOI_adapters import kernel_cache
 
+signal.signal(signal.SIGINT, signal.default_int_handler)
 kernel_cache.prepare()
 kernel_cache.compile_all()
 
