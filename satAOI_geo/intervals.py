@@ -1,13 +1,23 @@
 """Nodes at which a convex part touches something, exactly, a row interval at a time.
 
-For a convex part K of the robot (corners relative to the disc centre, radius r) and a convex
-piece P of an obstacle (radius s), the disc centres at which they touch are
+For a convex part K of the robot (corners relative to the disc centre, radius r) and a piece P of
+an obstacle (radius s), the disc centres at which they touch are
 
     P ⊕ (-K) ⊕ disc(r + s + clearance + CONTACT_MM)
 
-which is convex, so each lattice row meets it in one closed interval: circles about the corners,
-offset lines along the sides. One kernel walks both flanks of that shape upwards, row by row, and
-sets the interval's bits. No pixels are involved; `collision` is the reference it is held to.
+Where P is monotone, each lattice row meets this sum in one closed interval: two parts of P one
+above the other share a level cut, and the sum of a convex K with that holds every row that both
+their sums hold. The interval's left end is the least of what the left side of -K makes with each
+bulge and each hollow of the left side of P:
+
+- with a bulge, both being convex functions x(y), a curve whose edges are those of both in the
+  order of their slopes (and circles about its corners, offset lines along its edges);
+- with a hollow, the hollow's offset lines at each corner of -K: nothing can be least half-way
+  along an edge of -K or at a corner of the hollow, since there the hollow bends away from both
+  sides.
+
+Its right end is the same, mirrored. One kernel sets the bits of the intervals. No pixels are
+involved; `collision` is the reference it is held to.
 
 Coordinates inside the kernels are lattice units: node [iy, ix] lies at (ix, iy).
 """
@@ -17,74 +27,19 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from shapely.geometry import LineString
 
-from satAOI_geo.convex import convex_pieces
 from satAOI_geo.kernels import filled, helper, kernel
 from satAOI_geo.lattice import Lattice, Words
-from satAOI_geo.plan import (
-    CONTACT_MM,
-    BoolArray,
-    Circle,
-    FloatArray,
-    FloorPlan,
-    IntArray,
-    Shape,
-    polygons_in,
-)
+from satAOI_geo.pieces import Pieces
+from satAOI_geo.plan import CONTACT_MM, BoolArray, FloatArray, FloorPlan, IntArray
 from satAOI_geo.robot import Part, Robot
 
 BARRED: Final = 256
 """Steps that there is room for at first: most parts bar none, or a few, between their ends."""
 
-
-@dataclass(frozen=True, slots=True)
-class Pieces:
-    """Convex pieces whose union is every obstacle and the outside of the floor, in lattice units.
-
-    Attributes:
-        x: Shape (n,), corners of all pieces, each piece counter-clockwise from its lowest,
-            then leftmost corner. One corner is a circle, two are a segment.
-        y: Shape (n,).
-        first: Shape (m + 1,), where each piece starts in x and y.
-        top: Shape (m,), y of the highest corner of each piece.
-        radius: Shape (m,), how far each piece reaches beyond its corners.
-    """
-
-    x: FloatArray
-    y: FloatArray
-    first: IntArray
-    top: FloatArray
-    radius: FloatArray
-
-    @classmethod
-    def of(cls, plan: FloorPlan, lattice: Lattice, margin_mm: float) -> "Pieces":
-        """The pieces of a plan; the outside of the floor reaches out to the margin."""
-        outside = polygons_in([plan.outside(margin_mm)])
-        shapes: list[Shape] = [*(o.shape for o in plan.obstacles), *outside]
-        corners, radii_mm = [], []
-        for shape in shapes:
-            for piece_mm in _pieces(shape):
-                corners.append(_in_lattice_units(piece_mm, lattice))
-                radii_mm.append(shape.radius_mm if isinstance(shape, Circle) else 0.0)
-        x, y = np.concatenate(corners).T
-        first = np.cumsum([0, *(len(piece) for piece in corners)])
-        return cls(
-            np.ascontiguousarray(x),
-            np.ascontiguousarray(y),
-            first.astype(np.int64),
-            np.maximum.reduceat(y, first[:-1]),
-            np.array(radii_mm) / lattice.step_mm,
-        )
-
-    def between(self, low: float, high: float) -> "Pieces":
-        """The pieces that reach into the rows from low to high."""
-        bottom = self.y[self.first[:-1]]
-        kept = (self.top + self.radius >= low) & (bottom - self.radius <= high)
-        n_corners = np.diff(self.first)
-        corners = np.repeat(kept, n_corners)
-        first = np.concatenate(([0], np.cumsum(n_corners[kept])))
-        return Pieces(self.x[corners], self.y[corners], first, self.top[kept], self.radius[kept])
+SLACK: Final = 1e-9
+"""By how much offset lines end beyond their ends, in lattice units: no row may fall between two
+lines for rounding. Coordinates of 1 km are rounded by a hundredth of that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,50 +95,31 @@ class Intervals:
         lattice, pieces = self.lattice, self.pieces
         # -K: a half turn keeps the sense of rotation
         mirrored = _from_lowest(-part.corners_mm / lattice.step_mm)
-        part_x, part_y = np.ascontiguousarray(mirrored.T)
-        reach = (part.radius_mm + self.keep_mm) / lattice.step_mm
-        # no piece has more corners than all have together
-        corners = np.empty((2, pieces.x.size + part_x.size + 1))
-        flanks = np.empty((2, lattice.n_rows))
         asked = np.ones(lattice.n_rows, dtype=np.bool_) if rows is None else rows
-        nearest = np.empty((2, lattice.n_rows), dtype=np.int64)
         return filled(
             lambda barred: _block(
                 words,
                 lattice.first_row,
                 lattice.n_columns,
-                part_x,
-                part_y,
-                reach,
+                mirrored,
+                (part.radius_mm + self.keep_mm) / lattice.step_mm,
                 pieces.x,
                 pieces.y,
                 pieces.first,
+                pieces.is_hollow,
+                pieces.of_side,
+                pieces.bottom,
                 pieces.top,
                 pieces.radius,
-                corners,
-                flanks,
+                np.empty((4, len(mirrored) + 1)),
+                np.empty((4, lattice.n_rows)),
                 asked,
-                nearest,
+                np.empty((2, lattice.n_rows), dtype=np.int64),
                 watch,
                 barred,
             ),
             np.empty((BARRED, 3), dtype=np.int64),
         )
-
-
-def _pieces(shape: Shape) -> list[FloatArray]:
-    """Corners of convex polygons, segments or a point whose union is the shape."""
-    if isinstance(shape, Circle):
-        return [np.array([(shape.x_mm, shape.y_mm)])]
-    if isinstance(shape, LineString):
-        chain_mm = np.asarray(shape.coords)[:, :2]
-        return [chain_mm[i : i + 2] for i in range(len(chain_mm) - 1)]
-    return convex_pieces(shape)
-
-
-def _in_lattice_units(points_mm: FloatArray, lattice: Lattice) -> FloatArray:
-    """Points with node [iy, ix] at (ix, iy), from the lowest, then leftmost one on."""
-    return _from_lowest((points_mm - np.array(lattice.origin_mm)) / lattice.step_mm - 0.5)
 
 
 def _from_lowest(corners: FloatArray) -> FloatArray:
@@ -193,24 +129,27 @@ def _from_lowest(corners: FloatArray) -> FloatArray:
 
 
 @kernel(
-    "int64(uint64[:, :], int64, int64, const float64[:], const float64[:], float64, "
-    "const float64[:], const float64[:], const int64[:], const float64[:], const float64[:], "
-    "float64[:, :], float64[:, :], const bool[:], int64[:, :], bool, int64[:, :])"
+    "int64(uint64[:, :], int64, int64, const float64[:, :], float64, const float64[:], "
+    "const float64[:], const int64[:], const bool[:], const int64[:], const float64[:], "
+    "const float64[:], const float64[:], float64[:, :], float64[:, :], const bool[:], "
+    "int64[:, :], bool, int64[:, :])"
 )
 def _block(
     words: Words,
     first_row: int,
     n_columns: int,
-    part_x: FloatArray,
-    part_y: FloatArray,
+    part: FloatArray,
     reach: float,
     x: FloatArray,
     y: FloatArray,
     first: IntArray,
+    is_hollow: BoolArray,
+    of_side: IntArray,
+    bottom: FloatArray,
     top: FloatArray,
     radius: FloatArray,
-    corners: FloatArray,
-    flanks: FloatArray,
+    sides: FloatArray,
+    ends: FloatArray,
     rows: BoolArray,
     nearest: IntArray,
     watch: bool,  # noqa: FBT001  kernels take no keywords
@@ -218,74 +157,65 @@ def _block(
 ) -> int:
     """Set the bits of the lattice points in (piece ⊕ part) ⊕ disc(reach + radius), piece by piece.
 
-    The part is already turned by 180°. Lowest corner + lowest corner is the lowest corner of the
-    sum, and its other corners follow by taking the edges of both in the order of their direction.
-
     Args:
         words: Shape (n_rows, n_words), the rows from first_row on.
         first_row: Row of the whole lattice that row 0 of words is.
         n_columns: Columns of the lattice.
-        part_x: Corners of the part, from its lowest on.
-        part_y: The same.
+        part: Shape (n, 2), corners of the part, already turned by 180°, counter-clockwise from its
+            lowest on.
         reach: Radius of the part and distance to keep.
         x: These and the following are those of `Pieces`.
         y: The same.
         first: The same.
+        is_hollow: The same.
+        of_side: The same.
+        bottom: The same.
         top: The same.
         radius: The same.
-        corners: Room for x and y of the corners of a sum, the first one twice.
-        flanks: Room for its left and right end in each row.
+        sides: Room for the part's left side, x and y, and its right side, mirrored.
+        ends: Room for four numbers a row: the left end of a piece's interval, the right end,
+            mirrored, and how far the piece reaches to the left and to the right, mirrored, between
+            this row and the next, beyond what it does on the two.
         rows: Which rows are asked for; all where steps are looked for.
         nearest: Room for two numbers a row, see `_find_nearest`.
-        watch: Whether to look for steps that a piece bars between their ends.
-        barred: Room for such steps, three numbers each, see `Engine.block`.
+        watch: Whether to look for steps up that a piece bars between their ends.
+        barred: Room for steps that are barred, three numbers each, see `Engine.block`.
 
     Returns:
-        How many such steps there are.
+        How many barred steps there are.
     """
     n_rows = words.shape[0]
-    sum_x, sum_y = corners[0], corners[1]
-    left, right = flanks[0], flanks[1]
     n_barred = 0
     _find_nearest(rows, nearest)
-    part_top = part_y[_extremes(part_y)[1]]
+    n_left, n_right = _part_sides(part, sides)
+    part_bottom, part_top = sides[1, 0], sides[1, n_left - 1]
     for piece in range(radius.size):
-        begin, end = first[piece], first[piece + 1]
         r = reach + radius[piece]
-        lowest = math.ceil(y[begin] + part_y[0] - r)
+        lowest = math.ceil(bottom[piece] + part_bottom - r)
         highest = math.floor(top[piece] + part_top + r)
         if lowest >= first_row + n_rows or highest < first_row:
             continue
-        low = first_row + nearest[0, max(lowest - first_row, 0)]
-        high = first_row + nearest[1, min(highest - first_row, n_rows - 1)]
+        low = nearest[0, max(lowest - first_row, 0)]
+        high = nearest[1, min(highest - first_row, n_rows - 1)]
         # what lies between two rows touches no node, but may bar a step
         if low > high and not watch:
             continue
-        n_corners, n_rising = _minkowski_sum(
-            x[begin:end], y[begin:end], part_x, part_y, sum_x, sum_y
-        )
-        _right_flank(sum_x, sum_y, n_rising, r, low, high, first_row, right)
-        _left_flank(sum_x, sum_y, n_rising, n_corners, r, low, high, first_row, left)
-        _to_columns(left[low - first_row : high - first_row + 1], right[low - first_row :])
-        for iy in range(low - first_row, high - first_row + 1):
-            begin_ix, end_ix = _columns(left[iy], right[iy], n_columns)
-            if begin_ix <= end_ix:
-                set_bits(words[iy], begin_ix, end_ix)
-            elif watch and end_ix >= 0 and begin_ix < n_columns:
-                n_barred = _append(barred, n_barred, 0, iy, end_ix)
+        for side in range(2):
+            n_corners = n_right if side else n_left
+            part_x, part_y = sides[2 * side, :n_corners], sides[2 * side + 1, :n_corners]
+            begin, end = of_side[2 * piece + side], of_side[2 * piece + side + 1]
+            curves, hollows = first[begin : end + 1], is_hollow[begin:end]
+            rows_met = ends[side, low : high + 1]
+            _meet_side(x, y, curves, hollows, part_x, part_y, r, first_row + low, rows_met)
+            if watch:
+                below, above = max(lowest - first_row, 1) - 1, min(highest - first_row + 1, n_rows)
+                rows_met = ends[2 + side, below:above]
+                _watch_side(x, y, curves, part_x, part_y, r, first_row + below, rows_met)
+        _to_columns(ends[0, low : high + 1], ends[1, low : high + 1])
+        n_barred = _cover(words, ends, low, high, n_columns, barred, n_barred)
         if watch:
             n_barred = _bar_steps_up(
-                barred,
-                n_barred,
-                left,
-                right,
-                first_row,
-                lowest,
-                highest,
-                sum_x[:n_corners],
-                sum_y[:n_corners],
-                r,
-                n_columns,
+                barred, n_barred, ends, lowest - first_row, highest - first_row, n_columns
             )
     return n_barred
 
@@ -309,11 +239,43 @@ def _find_nearest(rows: BoolArray, nearest: IntArray) -> None:
 
 
 @helper
+def _part_sides(part: FloatArray, sides: FloatArray) -> tuple[int, int]:
+    """Write the left side of a convex polygon and its right side, mirrored, from the bottom up.
+
+    Returns:
+        How many corners each has: a level edge at the bottom or the top is left out.
+    """
+    n = part.shape[0]
+    n_rising = 0
+    for k in range(1, n):
+        rise = part[k, 1] - part[k - 1, 1]
+        if rise > 0.0 or (rise == 0.0 and part[k, 0] > part[k - 1, 0]):
+            n_rising = k
+    n_left = n_right = 0
+    for k in range(n_rising + 1):
+        n_right = _put(sides[2:], n_right, -part[k, 0], part[k, 1])
+    n_left = _put(sides[:2], n_left, part[0, 0], part[0, 1])
+    for k in range(n - 1, n_rising - 1, -1):
+        n_left = _put(sides[:2], n_left, part[k, 0], part[k, 1])
+    return n_left, n_right
+
+
+@helper
+def _put(side: FloatArray, n: int, x: float, y: float) -> int:
+    """Write a corner of a side as number n; of two that are level only the one on the left."""
+    if n and y <= side[1, n - 1]:
+        n -= 1
+        x = min(x, side[0, n])
+    side[0, n], side[1, n] = x, y
+    return n + 1
+
+
+@helper
 def _to_columns(left: FloatArray, right: FloatArray) -> None:
-    """Move the ends of intervals inwards, to the next whole column."""
+    """Move the ends of intervals inwards, to the next whole column; right ones are not mirrored."""
     for k in range(left.size):
         left[k] = np.ceil(left[k])
-        right[k] = np.floor(right[k])
+        right[k] = np.floor(-right[k])
 
 
 @helper
@@ -322,67 +284,71 @@ def _columns(left: float, right: float, n_columns: int) -> tuple[int, int]:
 
     The last comes before the first where there are none.
     """
-    return int(max(0.0, left)), int(min(n_columns - 1.0, right))
+    return int(min(max(0.0, left), n_columns)), int(max(min(n_columns - 1.0, right), -1.0))
+
+
+@helper
+def _cover(
+    words: Words,
+    ends: FloatArray,
+    low: int,
+    high: int,
+    n_columns: int,
+    barred: IntArray,
+    n_barred: int,
+) -> int:
+    """Set the bits of a piece's intervals; append steps to the right across those without a node.
+
+    Returns:
+        How many barred steps there are then.
+    """
+    for iy in range(low, high + 1):
+        begin_ix, end_ix = _columns(ends[0, iy], ends[1, iy], n_columns)
+        if begin_ix <= end_ix:
+            set_bits(words[iy], begin_ix, end_ix)
+        elif end_ix >= 0 and begin_ix < n_columns:
+            n_barred = _append(barred, n_barred, 0, iy, end_ix)
+    return n_barred
 
 
 @helper
 def _bar_steps_up(
-    barred: IntArray,
-    n_barred: int,
-    left: FloatArray,
-    right: FloatArray,
-    first_row: int,
-    lowest: int,
-    highest: int,
-    x: FloatArray,
-    y: FloatArray,
-    r: float,
-    n_columns: int,
+    barred: IntArray, n_barred: int, ends: FloatArray, lowest: int, highest: int, n_columns: int
 ) -> int:
-    """Append the steps up that a rounded polygon meets between their ends only.
+    """Append the steps up that a piece meets between their ends only.
 
-    From one row to the next the polygon, which is convex, spans from the lesser of its left ends
-    in the two to the greater of its right ends, or to its leftmost and rightmost point if it has
-    these between the two.
+    From one row to the next the piece spans all columns from the leftmost to the rightmost that it
+    reaches on the two and between them.
 
     Args:
         barred: Room for three numbers a step, see `Engine.block`.
         n_barred: How many steps there are before.
-        left: Left end in the rows that the polygon meets, from first_row on.
-        right: Right end.
-        first_row: See the caller.
-        lowest: The first row that the polygon meets, on the lattice or not.
+        ends: See the caller.
+        lowest: The first row that the piece meets, in `ends` or not.
         highest: The last one.
-        x: Of the polygon's corners.
-        y: The same.
-        r: By how much it is rounded.
         n_columns: Columns of the lattice.
 
     Returns:
         How many steps there are then.
     """
-    leftmost, rightmost = _extremes(x)
-    leftmost_row, rightmost_row = math.floor(y[leftmost]), math.floor(y[rightmost])
-    last_row = first_row + left.size - 1
-    for row in range(max(first_row, lowest - 1), min(last_row - 1, highest) + 1):
-        iy = row - first_row
-        is_plain = lowest <= row < highest and row not in (leftmost_row, rightmost_row)
+    left, right = ends[0], ends[1]
+    for iy in range(max(0, lowest - 1), min(left.size - 2, highest) + 1):
+        is_plain = lowest <= iy < highest and ends[2, iy] == np.inf and ends[3, iy] == np.inf
         if is_plain and max(left[iy], left[iy + 1]) <= min(right[iy], right[iy + 1]):
-            # both rows hold a common node, and the polygon does not reach beyond them between
+            # both rows hold a common node, and the piece does not reach beyond them between
             continue
-        least, greatest = math.inf, -math.inf
+        least, greatest = (
+            math.ceil(min(ends[2, iy], n_columns)),
+            math.floor(max(-ends[3, iy], -1.0)),
+        )
         begin_ix, end_ix = n_columns, -1
         next_begin_ix, next_end_ix = n_columns, -1
-        if row >= lowest:
-            least, greatest = left[iy], right[iy]
-            begin_ix, end_ix = _columns(least, greatest, n_columns)
-        if row < highest:
+        if iy >= lowest:
+            least, greatest = min(least, left[iy]), max(greatest, right[iy])
+            begin_ix, end_ix = _columns(left[iy], right[iy], n_columns)
+        if iy < highest:
             least, greatest = min(least, left[iy + 1]), max(greatest, right[iy + 1])
             next_begin_ix, next_end_ix = _columns(left[iy + 1], right[iy + 1], n_columns)
-        if row == leftmost_row:
-            least = min(least, math.ceil(x[leftmost] - r))
-        if row == rightmost_row:
-            greatest = max(greatest, math.floor(x[rightmost] + r))
         ix, last_ix = _columns(least, greatest, n_columns)
         while ix <= last_ix:
             if begin_ix <= ix <= end_ix:
@@ -396,18 +362,6 @@ def _bar_steps_up(
 
 
 @helper
-def _extremes(values: FloatArray) -> tuple[int, int]:
-    """Where the least and the greatest value are; numpy's own takes a second to compile."""
-    least = greatest = 0
-    for k in range(1, values.size):
-        if values[k] < values[least]:
-            least = k
-        if values[k] > values[greatest]:
-            greatest = k
-    return least, greatest
-
-
-@helper
 def _append(barred: IntArray, n: int, rows_up: int, iy: int, ix: int) -> int:
     """Write a step as number n, if there is room for it; the next number."""
     if n < barred.shape[0]:
@@ -416,148 +370,168 @@ def _append(barred: IntArray, n: int, rows_up: int, iy: int, ix: int) -> int:
 
 
 @helper
-def _minkowski_sum(
+def _watch_side(
+    x: FloatArray,
+    y: FloatArray,
+    first: IntArray,
+    part_x: FloatArray,
+    part_y: FloatArray,
+    r: float,
+    low: int,
+    left: FloatArray,
+) -> None:
+    """Write how far left the curves of a side, with a part and rounded, reach.
+
+    That goes to the row, from `low` on, below the place where a curve does so.
+    """
+    _clear(left)
+    at = _leftmost(part_x)
+    for curve in range(first.size - 1):
+        begin = first[curve]
+        of_curve = begin + _leftmost(x[begin : first[curve + 1]])
+        iy = math.floor(y[of_curve] + part_y[at]) - low
+        if 0 <= iy < left.size:
+            left[iy] = min(left[iy], x[of_curve] + part_x[at] - r)
+
+
+@helper
+def _leftmost(x: FloatArray) -> int:
+    """Where the least value is; numpy's own takes a second to compile."""
+    least = 0
+    for k in range(1, x.size):
+        if x[k] < x[least]:
+            least = k
+    return least
+
+
+@helper
+def _meet_side(
+    x: FloatArray,
+    y: FloatArray,
+    first: IntArray,
+    is_hollow: BoolArray,
+    part_x: FloatArray,
+    part_y: FloatArray,
+    r: float,
+    low: int,
+    left: FloatArray,
+) -> None:
+    """Write the left ends of a side, with a part and rounded, in the rows from `low` on.
+
+    Args:
+        x: Corners of curves.
+        y: The same.
+        first: Where each curve of this side starts, and where the last one ends.
+        is_hollow: Whether it is a hollow.
+        part_x: Left side of the part.
+        part_y: The same.
+        r: The radius by which their sum is rounded.
+        low: The row that the first left end is of.
+        left: The left ends.
+    """
+    _clear(left)
+    for curve in range(is_hollow.size):
+        begin, end = first[curve], first[curve + 1]
+        if is_hollow[curve]:
+            _meet_hollow(x[begin:end], y[begin:end], part_x, part_y, r, low, left)
+        else:
+            _meet_bulge(x[begin:end], y[begin:end], part_x, part_y, r, low, left)
+
+
+@helper
+def _clear(left: FloatArray) -> None:
+    """No left ends yet."""
+    for k in range(left.size):
+        left[k] = np.inf
+
+
+@helper
+def _meet_bulge(
     ax: FloatArray,
     ay: FloatArray,
     bx: FloatArray,
     by: FloatArray,
-    sum_x: FloatArray,
-    sum_y: FloatArray,
-) -> tuple[int, int]:
-    """Corners of the sum of two convex polygons, the first corner again at the end.
-
-    Both start at their lowest, then leftmost corner and run counter-clockwise. Returns the number
-    of edges and the number of those that rise (direction in [0°, 180°)): the right flank.
-    """
-    n_a = ax.size if ax.size > 1 else 0
-    n_b = bx.size if bx.size > 1 else 0
-    sum_x[0], sum_y[0] = ax[0] + bx[0], ay[0] + by[0]
-    i = j = n = n_rising = 0
-    # the corners at which the edges i and j begin: a remainder would take longer than all else
-    a = b = 0
-    while i < n_a or j < n_b:
-        a_next = a + 1 if a + 1 < ax.size else 0
-        b_next = b + 1 if b + 1 < bx.size else 0
-        adx, ady = ax[a_next] - ax[a], ay[a_next] - ay[a]
-        bdx, bdy = bx[b_next] - bx[b], by[b_next] - by[b]
-        # rising edges before falling ones, so that the cross product only ever compares
-        # directions within the same half turn: parallel edges of a segment cannot be confused
-        a_rises = ady > 0.0 or (ady == 0.0 and adx > 0.0)
-        b_rises = bdy > 0.0 or (bdy == 0.0 and bdx > 0.0)
-        if i == n_a:
-            take_a, take_b = False, True
-        elif j == n_b:
-            take_a, take_b = True, False
-        elif a_rises != b_rises:
-            take_a, take_b = a_rises, b_rises
-        else:
-            cross = adx * bdy - ady * bdx
-            take_a, take_b = cross >= 0.0, cross <= 0.0
-        n += 1
-        rises = (take_a and a_rises) or (take_b and b_rises)
-        if take_a:
-            i, a = i + 1, a_next
-        if take_b:
-            j, b = j + 1, b_next
-        sum_x[n] = ax[a] + bx[b]
-        sum_y[n] = ay[a] + by[b]
-        if rises:
-            n_rising = n
-    return n, n_rising
-
-
-@helper
-def _right_flank(
-    x: FloatArray,
-    y: FloatArray,
-    n_rising: int,
     r: float,
     low: int,
-    high: int,
-    first_row: int,
-    right: FloatArray,
-) -> None:
-    """Greatest x of the rounded polygon in each row from low to high, going up its right side.
-
-    The first element of the flank stands for first_row.
-    """
-    iy = low
-    vx, vy = x[0], y[0]
-    for k in range(1, n_rising + 1):
-        dx, dy = x[k] - vx, y[k] - vy
-        if dy > 0.0:
-            length = math.hypot(dx, dy)
-            nx, ny = dy / length, -dx / length
-            iy = _arc(vx, vy, r, 1.0, iy, min(high, vy + r * ny), first_row, right)
-            last = min(high, y[k] + r * ny)
-            iy = _line(vx + r * nx, vy + r * ny, dx / dy, iy, last, first_row, right)
-        vx, vy = x[k], y[k]
-    _arc(vx, vy, r, 1.0, iy, high, first_row, right)
-
-
-@helper
-def _left_flank(
-    x: FloatArray,
-    y: FloatArray,
-    n_rising: int,
-    n_corners: int,
-    r: float,
-    low: int,
-    high: int,
-    first_row: int,
     left: FloatArray,
 ) -> None:
-    """Least x of the rounded polygon in each row from low to high, going up its left side.
-
-    The first element of the flank stands for first_row.
-    """
-    iy = low
-    vx, vy = x[0], y[0]
-    for k in range(n_corners - 1, n_rising - 1, -1):
-        dx, dy = x[k] - vx, y[k] - vy
+    """Lower the left ends in the rows from `low` on to those of two bulges, added and rounded."""
+    i = j = 0
+    n_a, n_b = ax.size - 1, bx.size - 1
+    vx, vy = ax[0] + bx[0], ay[0] + by[0]
+    last = min(low + left.size - 1.0, ay[n_a] + by[n_b] + r)
+    iy = max(low, math.ceil(vy - r))
+    while i < n_a or j < n_b:
+        if i == n_a:
+            takes_a = False
+        elif j == n_b:
+            takes_a = True
+        else:
+            rise_a, rise_b = ay[i + 1] - ay[i], by[j + 1] - by[j]
+            takes_a = (ax[i + 1] - ax[i]) * rise_b < (bx[j + 1] - bx[j]) * rise_a
+        if takes_a:
+            i += 1
+        else:
+            j += 1
+        next_x, next_y = ax[i] + bx[j], ay[i] + by[j]
+        dx, dy = next_x - vx, next_y - vy
+        # what is level for rounding is nothing
         if dy > 0.0:
-            length = math.hypot(dx, dy)
-            nx, ny = -dy / length, dx / length
-            iy = _arc(vx, vy, r, -1.0, iy, min(high, vy + r * ny), first_row, left)
-            last = min(high, y[k] + r * ny)
-            iy = _line(vx + r * nx, vy + r * ny, dx / dy, iy, last, first_row, left)
-        elif dx > 0.0:
-            # the level top, met from its left end: the arc about that end takes all rows left
-            break
-        vx, vy = x[k], y[k]
-    _arc(vx, vy, r, -1.0, iy, high, first_row, left)
+            length = math.sqrt(dx * dx + dy * dy)
+            nx, ny = -r * dy / length, r * dx / length
+            iy = _arc(vx, vy, r, iy, min(last, vy + ny), low, left)
+            iy = _line(vx + nx, vy + ny, dx / dy, iy, min(last, next_y + ny), low, left)
+        vx, vy = next_x, next_y
+    _arc(vx, vy, r, iy, last, low, left)
 
 
 @helper
-def _arc(
-    vx: float,
-    vy: float,
-    r: float,
-    side: float,
-    iy: int,
-    last: float,
-    first_row: int,
-    flank: FloatArray,
-) -> int:
-    """Fill rows from iy up to `last` with the circle of radius r about (vx, vy); next row."""
+def _arc(vx: float, vy: float, r: float, iy: int, last: float, low: int, left: FloatArray) -> int:
+    """Lower left ends from row iy up to `last` to the circle about (vx, vy); next row."""
     next_iy = max(iy, math.floor(last) + 1)
-    rows = flank[iy - first_row : next_iy - first_row]
+    rows = left[iy - low : next_iy - low]
     for k in range(rows.size):
         rise = (iy + k) - vy
-        rows[k] = vx + side * math.sqrt(max(0.0, r * r - rise * rise))
+        rows[k] = min(rows[k], vx - math.sqrt(max(0.0, r * r - rise * rise)))
     return next_iy
 
 
 @helper
 def _line(
-    x0: float, y0: float, slope: float, iy: int, last: float, first_row: int, flank: FloatArray
+    x0: float, y0: float, slope: float, iy: int, last: float, low: int, left: FloatArray
 ) -> int:
-    """Fill rows from iy up to `last` with the line through (x0, y0); next row."""
+    """Lower left ends from row iy up to `last` to the line through (x0, y0); next row."""
     next_iy = max(iy, math.floor(last) + 1)
-    rows = flank[iy - first_row : next_iy - first_row]
+    rows = left[iy - low : next_iy - low]
     for k in range(rows.size):
-        rows[k] = x0 + ((iy + k) - y0) * slope
+        rows[k] = min(rows[k], x0 + ((iy + k) - y0) * slope)
     return next_iy
+
+
+@helper
+def _meet_hollow(
+    ax: FloatArray,
+    ay: FloatArray,
+    bx: FloatArray,
+    by: FloatArray,
+    r: float,
+    low: int,
+    left: FloatArray,
+) -> None:
+    """Lower the left ends in the rows from `low` on to a hollow's offset lines at corners b."""
+    last_row = low + left.size - 1
+    for i in range(ax.size - 1):
+        dx, dy = ax[i + 1] - ax[i], ay[i + 1] - ay[i]
+        length = math.sqrt(dx * dx + dy * dy)
+        x0, y0 = ax[i] - r * dy / length, ay[i] + r * dx / length
+        slope, least = dx / dy, min(0.0, dx)
+        for j in range(bx.size):
+            vx, vy = x0 + bx[j], y0 + by[j]
+            for iy in range(
+                max(low, math.ceil(vy - SLACK)), min(last_row, math.floor(vy + dy + SLACK)) + 1
+            ):
+                across = max((iy - vy) * slope, least)
+                left[iy - low] = min(left[iy - low], vx + across)
 
 
 @helper

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box
 
-from satAOI_geo.plan import Circle, FloorPlan, Kind, Obstacle, Region, Shape
+from satAOI_geo.plan import Circle, FloorPlan, Kind, Obstacle, Region, Shape, polygons_in
 from satAOI_geo.robot import Robot
 
 SWING_RANGES_DEG: Final = [(-90, 90), (-45, 120), (0, 75), (-170, -10), (-180, 180), (0, 0)]
@@ -47,6 +47,17 @@ def ring(centre_mm: tuple[float, float], outer_mm: float, inner_mm: float) -> Po
 ROOM: Final = box(0, 0, 4000, 3600)
 CAMPUS_MM: Final = (400_000.0, -250_000.0)
 
+
+def ring_part(
+    centre_mm: tuple[float, float], outer_mm: float, inner_mm: float, window: Polygon
+) -> Polygon:
+    """What is in a window of a ring of many corners."""
+    centre = Point(centre_mm)
+    whole = centre.buffer(outer_mm, quad_segs=40).difference(centre.buffer(inner_mm, quad_segs=40))
+    (part,) = polygons_in([whole.intersection(window)])
+    return part
+
+
 HARD: Final[dict[str, FloorPlan]] = {
     "nothing_on_the_floor": plan_of(ROOM),
     "specks_smaller_than_a_cell": plan_of(
@@ -61,6 +72,14 @@ HARD: Final[dict[str, FloorPlan]] = {
         Polygon([(1000, 1200), (3000, 1200.001), (2000, 1200.002)]),
         Polygon([(500, 3000), (2500, 2400), (2500, 2400.000001)]),
         Polygon([(2000, 0), (2000.0001, 0), (2000.0001, 900), (2000, 900)]),
+    ),
+    "thin_bands_along_arcs": plan_of(
+        ROOM,
+        ring_part((2000, 1300), 700, 699.99, box(0, 0, 4000, 1500)),
+        ring_part((3000, 3000), 300, 280, box(2900, 0, 4000, 4000)),
+        Polygon(
+            [(900, 2200), (1204, 2403), (1003, 2604), (1304, 2803), (1003.5, 2604), (1204.5, 2403)]
+        ),
     ),
     "triangles_that_touch": plan_of(
         ROOM,

@@ -226,7 +226,7 @@ def test_slow_engine_finds_the_same_free_space() -> None:
     assert np.array_equal(slow.words, setting.space(plan).words)
 
 
-@pytest.mark.parametrize("name", ["specks_smaller_than_a_cell", "slivers"])
+@pytest.mark.parametrize("name", ["specks_smaller_than_a_cell", "slivers", "thin_bands_along_arcs"])
 def test_steps_that_something_small_bars_are_those_of_the_slow_engine(name: str) -> None:
     # a robot of parts narrower than a cell, among things smaller than a cell
     robot = replace(

@@ -5,9 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+import shapely
+from hypothesis import assume, given
 from hypothesis import strategies as st
-from shapely.geometry import LineString, Polygon, box
+from shapely.affinity import rotate
+from shapely.geometry import LineString, Point, Polygon, box
 
 from satAOI_geo.collision import Collider, Reference
 from satAOI_geo.intervals import Intervals, set_bits
@@ -240,6 +242,70 @@ def polygon_gaps_mm(corners_mm: FloatArray, x_mm: FloatArray, y_mm: FloatArray) 
         inside &= left_mm >= 0
         nearest_mm = np.minimum(nearest_mm, np.hypot(beyond_mm(along_mm, 0, length_mm), left_mm))
     return np.where(inside, 0.0, nearest_mm)
+
+
+def stars() -> st.SearchStrategy[Polygon]:
+    """Outlines that bend in and out, with level sides among theirs, about the origin."""
+
+    def of(reaches_mm: list[float], grain_mm: float) -> Polygon:
+        angles_rad = 2 * np.pi * np.arange(len(reaches_mm)) / len(reaches_mm)
+        corners_mm = np.column_stack((np.cos(angles_rad), np.sin(angles_rad)))
+        corners_mm *= np.array(reaches_mm)[:, np.newaxis]
+        return Polygon(grain_mm * np.round(corners_mm / grain_mm))
+
+    reaches_mm = st.lists(st.floats(60, 600), min_size=3, max_size=24)
+    return st.builds(of, reaches_mm, st.sampled_from([0.125, 100.0]))
+
+
+def crescents() -> st.SearchStrategy[Polygon]:
+    """Thin and thick bands along arcs, turned."""
+
+    def of(radius_mm: float, width_mm: float, turn_deg: float, x_mm: float) -> Polygon:
+        ring = (
+            Point(0, 0).buffer(radius_mm, 24).difference(Point(0, 0).buffer(radius_mm - width_mm))
+        )
+        part = ring.intersection(box(x_mm, -1000, 1000, 1000))
+        return rotate(shapely.get_parts(part)[0], turn_deg, origin=(0, 0))
+
+    return st.builds(
+        of,
+        st.floats(200, 600),
+        st.sampled_from([0.01, 30.0, 150.0]),
+        st.floats(0, 360),
+        st.sampled_from([-100.0, 0.0, 90.0]),
+    )
+
+
+@given(
+    stars() | crescents(),
+    st.integers(1, 6),
+    st.floats(0, 2 * math.pi),
+    st.floats(10, 400),
+    st.sampled_from([0.0, 3.0, 120.0]),
+)
+def test_part_touches_an_outline_where_the_distance_is_within_its_radius(
+    outline: Polygon, n_corners: int, first_rad: float, size_mm: float, radius_mm: float
+) -> None:
+    assume(outline.is_valid and outline.area > 0)
+    angles_rad = first_rad + 2 * np.pi * np.arange(n_corners) / n_corners
+    corners_mm = size_mm * np.column_stack((np.cos(angles_rad), 0.4 * np.sin(angles_rad)))
+    coarse = replace(WINDOW, step_mm=25.0, n_rows=64, n_columns=80)
+    across_mm, up_mm = nodes_mm(coarse)
+    nodes = np.stack((across_mm, up_mm), axis=-1)[..., np.newaxis, :]
+    parts = shapely.convex_hull(shapely.multipoints(corners_mm + nodes))
+    gaps_mm = shapely.distance(parts, outline)
+    found = blocked(Part(ring_of(corners_mm), radius_mm), outline, lattice=coarse)
+    expected = gaps_mm <= radius_mm + CONTACT_MM
+    # shapely's own rounding may fall on either side of contact
+    sure = np.abs(gaps_mm - radius_mm - CONTACT_MM) > 1e-9
+    assert np.array_equal(found[sure], expected[sure])
+
+
+def ring_of(corners_mm: FloatArray) -> FloatArray:
+    """Corners of the convex hull, counter-clockwise, the first not repeated."""
+    hull = shapely.convex_hull(shapely.multipoints(corners_mm))
+    ends_mm = shapely.get_coordinates(shapely.orient_polygons(hull))
+    return ends_mm[:-1] if isinstance(hull, Polygon) else ends_mm
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -1,6 +1,6 @@
-"""Convex pieces are convex, do not overlap, and make up the polygon."""
+"""Monotone pieces are monotone, do not overlap, and make up the polygon."""
 
-import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,44 +10,37 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate
 from shapely.geometry import Point, Polygon, box
 
-from satAOI_geo.convex import convex_pieces
+from satAOI_geo.monotone import monotone_pieces
 from satAOI_geo.plan import FloatArray
 from tests.drawn import HARD
 
 
-def turning_rad(corners_mm: FloatArray) -> FloatArray:
-    """By how much each corner turns left."""
-    sides_mm = np.roll(corners_mm, -1, axis=0) - corners_mm
-    headings_rad = np.arctan2(sides_mm[:, 1], sides_mm[:, 0])
-    turns_rad = np.roll(headings_rad, -1) - headings_rad
-    # between -π and π
-    return turns_rad - 2 * np.pi * np.round(turns_rad / (2 * np.pi))
+def n_turns(corners_mm: FloatArray) -> int:
+    """How often a ring of corners begins to rise or to fall; level sides do neither."""
+    rises = [b - a > 0 for a, b in pairwise([*corners_mm[:, 1], corners_mm[0, 1]]) if b != a]
+    return sum(one != other for one, other in pairwise([*rises, rises[0]]))
 
 
 def assert_pieces_make_up(polygon: Polygon) -> int:
     """How many pieces there are, once they are found to be what they should be."""
-    pieces = convex_pieces(polygon)
-    for corners_mm in pieces:
-        turns_rad = turning_rad(corners_mm)
-        # no corner bends inwards, and the sides go round once
-        assert turns_rad.min() > -1e-9
-        assert turns_rad.sum() == pytest.approx(2 * math.pi)
+    pieces = monotone_pieces(polygon)
+    assert [n_turns(corners_mm) for corners_mm in pieces] == [2] * len(pieces)
     made_of = [Polygon(corners_mm) for corners_mm in pieces]
+    assert all(piece.exterior.is_ccw for piece in made_of)
     # together as large as the polygon and nowhere off it: so they do not overlap
     assert sum(piece.area for piece in made_of) == pytest.approx(polygon.area, rel=1e-9)
     off = shapely.union_all(made_of).symmetric_difference(polygon)
     assert off.area < 1e-9 * polygon.area
-    # a corner that bends inwards needs two diagonals at most, and no other diagonal is left
-    assert len(pieces) <= 1 + 2 * n_inward_corners(polygon)
+    # one cut at each turn inside the polygon is enough to leave none
+    assert len(pieces) <= max(1, n_turns_of(polygon) - 1)
     return len(pieces)
 
 
-def n_inward_corners(polygon: Polygon) -> int:
-    """How many corners of the outline and the holes bend inwards."""
-    oriented = shapely.orient_polygons(polygon)
-    rings = [oriented.exterior, *oriented.interiors]
-    # the polygon is on the left of all its rings
-    return sum(int((turning_rad(np.asarray(ring.coords)[:-1]) < -1e-9).sum()) for ring in rings)
+def n_turns_of(polygon: Polygon) -> int:
+    """How often the outline and the holes begin to rise or to fall."""
+    return sum(
+        n_turns(np.asarray(ring.coords)[:-1]) for ring in (polygon.exterior, *polygon.interiors)
+    )
 
 
 def outlines() -> dict[str, Polygon]:
@@ -109,9 +102,20 @@ def test_convex_polygon_is_one_piece(n_corners: int) -> None:
     assert assert_pieces_make_up(Polygon(corners_mm[::-1])) == 1
 
 
-def test_l_is_two_pieces() -> None:
-    ell = Polygon([(0, 0), (600, 0), (600, 200), (200, 200), (200, 500), (0, 500)])
-    assert assert_pieces_make_up(ell) == 2
+@pytest.mark.parametrize("quarters", [0, 1])
+def test_half_a_ring_is_one_piece_where_it_bends_sideways_and_two_where_it_is_an_arch(
+    quarters: int,
+) -> None:
+    ring = Point(0, 0).buffer(1000, quad_segs=40).difference(Point(0, 0).buffer(990, quad_segs=40))
+    half = ring.intersection(box(0, -2000, 2000, 2000))
+    assert assert_pieces_make_up(rotate(half, 90 * quarters, origin=(0, 0))) == 1 + quarters
+
+
+def test_comb_has_a_piece_a_tooth() -> None:
+    teeth = [box(300 * k, 0, 300 * k + 100, 500) for k in range(5)]
+    comb = shapely.union_all([box(0, -100, 1300, 0), *teeth])
+    assert assert_pieces_make_up(comb) == 5
+    assert assert_pieces_make_up(rotate(comb, 90)) == 1
 
 
 def test_polygon_that_cannot_be_triangulated_whole_is_cut(monkeypatch: pytest.MonkeyPatch) -> None:
