@@ -97,7 +97,7 @@ BATCH_EPILOG: Final = (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the program and return its exit code; a known error becomes one line of talk."""
-    from satAOI_adapters import linear_algebra
+    from satAOI_adapters import linear_algebra, put_off
     from satAOI_adapters.collector import leave_at_once, look_seldom
     from satAOI_adapters.terminal import accept_any_text, say_error
 
@@ -105,6 +105,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     look_seldom()
     leave_at_once()
     linear_algebra.without_threads()
+    put_off.until_used()
     try:
         code = commands.main(arguments, prog_name="satAOI-geo", standalone_mode=False)
         return int(code or DONE)

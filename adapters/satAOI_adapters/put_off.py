@@ -1,0 +1,94 @@
+"""Libraries that ezdxf loads at once and hardly ever uses, put off until they are used.
+
+ezdxf reads queries, such as `LINE[layer=="A-WALL"]`, with pyparsing, and typefaces with fontTools.
+This program asks no queries and measures no texts, and the two are a tenth of all that a run
+loads. So something stands in for what ezdxf takes from them. Where that is used after all, or
+anything else of the two is asked for, the library is loaded and everything is as ever.
+"""
+
+import sys
+from importlib import import_module
+from importlib.machinery import ModuleSpec, PathFinder
+from threading import Lock
+from types import ModuleType
+from typing import Any, Final
+
+TAKEN: Final = {
+    "ezdxf.queryparser": ("ezdxf.query", ["EntityQueryParser"]),
+    "pyparsing": ("ezdxf.sections.blocks", ["ParseException"]),
+    "fontTools.ttLib": ("ezdxf.fonts.font_manager", ["TTFont", "TTLibError"]),
+}
+"""Module that is put off, to the module of ezdxf that takes something from it, and what."""
+
+_one_at_a_time = Lock()
+
+
+class NeverRaised(Exception):  # noqa: N818 - it is no error
+    """For an exception to be caught, of a library that is not loaded and so raises none."""
+
+
+def until_used() -> None:
+    """Put the libraries off, where they are not loaded yet; for a program, as it starts."""
+    for module, (_, names) in TAKEN.items():
+        spec = _spec_of(module)
+        if spec is not None and module not in sys.modules:
+            sys.modules[module] = _StandIn(spec, names)
+
+
+class _StandIn(ModuleType):
+    """For a module; what it does not have is the module's own."""
+
+    def __init__(self, spec: ModuleSpec, names: list[str]) -> None:
+        super().__init__(spec.name)
+        self.__spec__ = spec
+        if spec.submodule_search_locations is not None:
+            self.__path__ = spec.submodule_search_locations
+        for name in names:
+            is_caught = name.endswith(("Error", "Exception"))
+            setattr(self, name, NeverRaised if is_caught else _Later(spec.name, name))
+
+    def __getattr__(self, name: str) -> Any:  # noqa: ANN401  whatever the module has
+        if name == "__path__":
+            raise AttributeError(f"'{self.__name__}' is no package")
+        return getattr(_loaded(self.__name__), name)
+
+
+class _Later:
+    """For a class or an object of a module."""
+
+    def __init__(self, module: str, name: str) -> None:
+        self._module, self._name = module, name
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:  # noqa: ANN401  as the class does
+        return getattr(_loaded(self._module), self._name)(*args, **kwargs)
+
+    def __getattr__(self, name: str) -> Any:  # noqa: ANN401  whatever the object has
+        return getattr(getattr(_loaded(self._module), self._name), name)
+
+
+def _loaded(module: str) -> ModuleType:
+    """The module itself, from now on also where ezdxf has what stood in for parts of it."""
+    with _one_at_a_time:
+        stand_in = sys.modules.get(module)
+        if isinstance(stand_in, _StandIn):
+            del sys.modules[module]
+    loaded = import_module(module)
+    if isinstance(stand_in, _StandIn):
+        # for who has taken hold of it
+        vars(stand_in).update(vars(loaded))
+    taker, names = TAKEN[module]
+    if taker in sys.modules:
+        vars(sys.modules[taker]).update({name: getattr(loaded, name) for name in names})
+    return loaded
+
+
+def _spec_of(module: str) -> ModuleSpec | None:
+    """Where a module lies, without loading the packages it is in; None if it is not there."""
+    spec, folders, name = None, None, ""
+    for part in module.split("."):
+        name = f"{name}.{part}" if name else part
+        spec = PathFinder.find_spec(name, folders)
+        if spec is None:
+            return None
+        folders = spec.submodule_search_locations
+    return spec

@@ -1,0 +1,87 @@
+"""Libraries put off by the command line: not loaded by a run, and as ever where they are used."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.command_line import drawn_room
+
+DRAWING = """
+import ezdxf
+document = ezdxf.new()
+space = document.modelspace()
+for layer in "AAB":
+    space.add_line((0, 0), (1, 1), dxfattribs={"layer": layer})
+"""
+
+IN_THREADS = """
+from concurrent.futures import ThreadPoolExecutor
+with ThreadPoolExecutor(8) as threads:
+    parsers = set(threads.map(lambda _: ezdxf.query.EntityQueryParser.parse_string, range(8)))
+import pyparsing
+print(*(type(parser.__self__) is pyparsing.And for parser in parsers))
+"""
+
+
+def said(code: str) -> str:
+    """What Python prints in a process of its own, the last line of it for an error."""
+    code = f"import sys; sys.path[:0] = {sys.path!r}\n{code}"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    return done.stdout + "".join(done.stderr.splitlines()[-1:])
+
+
+def test_a_run_that_reads_and_writes_a_drawing_loads_none_of_them(tmp_path: Path) -> None:
+    plan, output = drawn_room(tmp_path / "room.dxf"), tmp_path / "aoi.dxf"
+    code = (
+        "from satAOI_geo.cli import main\n"
+        f"main([{str(plan)!r}, '-o', {str(output)!r}, '--quiet'])\n"
+        "parts = ('pyparsing.core', 'fontTools', 'fontTools.ttLib.ttFont')\n"
+        "print('ezdxf' in sys.modules, *(name for name in parts if name in sys.modules))"
+    )
+    assert said(code) == "True\n"
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        pytest.param("print(len(space.query('LINE[layer==\"A\"]')))", id="a query"),
+        pytest.param("space.query('LINE[[')", id="a query that is none"),
+        pytest.param(
+            "document.blocks.new('B'); document.blocks.delete_block('B')\n"
+            "import pyparsing; print(ezdxf.sections.blocks.ParseException is "
+            "pyparsing.ParseException, 'B' in document.blocks)",
+            id="a block that is asked for",
+        ),
+        pytest.param(
+            "from ezdxf.fonts.fonts import make_font\n"
+            "print(make_font('DejaVuSans.ttf', 2.5).text_width('area of interest'))",
+            id="the width of a text",
+        ),
+        pytest.param(
+            "from pathlib import Path; from ezdxf.fonts import font_manager\n"
+            f"font_manager.get_ttf_font_face(Path({__file__!r}))",
+            id="a typeface that is none",
+        ),
+        pytest.param("from pyparsing import *; print(Word('a').parse_string('aab'))", id="names"),
+        pytest.param("import pyparsing.results as r; print(r.ParseResults('a'))", id="a part"),
+        pytest.param("from fontTools.ttLib import sfnt; print(sfnt.__name__)", id="another part"),
+        pytest.param(
+            "from importlib.util import find_spec; print(find_spec('pyparsing').origin)",
+            id="where it lies",
+        ),
+        pytest.param(IN_THREADS, id="threads"),
+    ],
+)
+def test_what_is_put_off_is_as_ever_where_it_is_used(use: str) -> None:
+    put_off = "from satAOI_adapters import put_off; put_off.until_used()\n"
+    assert said(put_off + DRAWING + use) == said(DRAWING + use) != ""
+
+
+def test_what_is_loaded_already_is_not_put_off() -> None:
+    code = (
+        "import pyparsing; from satAOI_adapters import put_off; put_off.until_used()\n"
+        "print(sys.modules['pyparsing'] is pyparsing)"
+    )
+    assert said(code) == "True\n"
