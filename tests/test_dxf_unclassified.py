@@ -220,7 +220,7 @@ def test_arrow_of_a_tapered_line_is_one_open_line(tmp_path: Path) -> None:
     (finding,) = [f for f in plan.findings if f.code == "unclassified-left-out"]
     assert finding.handle
     assert finding.at_mm is not None
-    assert finding.message.startswith("1 open lines on layer 'XYZ'")
+    assert finding.message.startswith("1 open line on layer 'XYZ'")
 
 
 @pytest.mark.parametrize("drawn", ["outline", "layer", "lines", "block"])
@@ -242,7 +242,7 @@ def test_dashed_outline_is_left_out_and_said(drawn: str, tmp_path: Path) -> None
     assert standing(plan, "XYZ") == []
     (finding,) = [finding for finding in plan.findings if finding.layer == "XYZ"]
     assert finding.code == "dashed"
-    assert finding.message.startswith("1 closed outlines on layer 'XYZ', 4.00 m² together")
+    assert finding.message.startswith("1 dashed outline on layer 'XYZ', 4.00 m² together")
     assert finding.at_mm == (5000.0, 5000.0)
     assert finding.handle
     assert "--layers" in finding.remedy

@@ -663,7 +663,7 @@ def test_open_lines_on_a_nameless_layer_are_left_out_and_said(tmp_path: Path) ->
     plan = plan_of(document, tmp_path)
     assert {obstacle.layer for obstacle in plan.obstacles} == {"COLUMN"}
     (said,) = [f for f in plan.findings if f.code == "unclassified-left-out"]
-    assert "1 open lines and 1 patterns on layer 'XYZ'" in said.message
+    assert "1 open line and 1 pattern on layer 'XYZ'" in said.message
 
 
 @pytest.mark.parametrize("leaf", ["line", "rectangle", "four lines"])

@@ -16,6 +16,7 @@ from satAOI_adapters.dxf_read.expand import BY_PARENT, Placed
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.meaning import Seen
 from satAOI_adapters.layers import Certainty, Meaning
+from satAOI_adapters.wording import are, counted
 from satAOI_geo.plan import Finding, Frame
 
 BY_LAYER: Final = "BYLAYER"
@@ -93,8 +94,8 @@ def _finding(lines: Sequence[Feature], frame: Frame) -> Finding:
     x_mm, y_mm = frame.to_drawing_mm([first.paths[0].start])[0]
     return Finding(
         "dashed",
-        f"{len(lines)} lines on layer '{first.placed.layer}' are dashed, as things above the cut "
-        "or under the floor are drawn: they are left out",
+        f"{counted(len(lines), 'dashed line')} on layer '{first.placed.layer}' "
+        f"{are(len(lines))} left out: things above the cut or under the floor are drawn so",
         "draw them continuous, or name the layer in a file for --layers, if they stop the robot",
         layer=first.placed.layer,
         handle=first.placed.handle,

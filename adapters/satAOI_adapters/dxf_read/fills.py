@@ -32,6 +32,7 @@ from satAOI_adapters.dxf_read.survey import Survey, drawn_by
 from satAOI_adapters.dxf_read.swings import LEAF_SLACK_MM, swings
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_adapters.layers import KINDS, Meaning
+from satAOI_adapters.wording import are, counted
 from satAOI_geo.plan import Finding, Frame, Kind, Obstacle
 
 HATCHES: Final = frozenset(
@@ -315,9 +316,10 @@ def _taken(found: Sequence[_Fill], terms: Terms) -> Iterator[Finding]:
         area_m2 = sum(fill.region.area for fill in own) / 1e6
         yield Finding(
             "fills-alone",
-            f"{len(own)} solid fills on layer '{layer}', {area_m2:.2f} m² together, that nothing "
-            "else outlines stand where lines of walls end, or equal ones stand: they are taken as "
-            f"columns or pieces of walls, the largest at ({x_mm:.1f}, {y_mm:.1f}) mm",
+            f"{counted(len(own), 'solid fill')} on layer '{layer}', {area_m2:.2f} m² together, "
+            f"that nothing else outlines {are(len(own))} taken for columns or pieces of walls, "
+            "since lines of walls end there, or equal ones stand; the largest at "
+            f"({x_mm:.1f}, {y_mm:.1f}) mm",
             "have the layer ignored in a file for --layers if they do not stop the robot",
             layer=layer,
             handle=largest.handle,
@@ -330,8 +332,8 @@ def _left_out(fills: Sequence[_Fill], terms: Terms) -> Iterator[Finding]:
         largest, (x_mm, y_mm) = _largest(own, terms)
         yield Finding(
             "fills-left-out",
-            f"{len(own)} solid fills on layer '{layer}' may be columns or pieces of walls, and "
-            f"nothing tells that they are: they are left out, the largest at ({x_mm:.1f}, "
+            f"{counted(len(own), 'solid fill')} on layer '{layer}' that may be columns or pieces "
+            f"of walls {are(len(own))} left out, as nothing tells so; the largest at ({x_mm:.1f}, "
             f"{y_mm:.1f}) mm",
             "draw those that stop the robot on a layer COLUMN",
             layer=layer,

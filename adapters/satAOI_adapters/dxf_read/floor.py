@@ -22,8 +22,8 @@ from satAOI_adapters.dxf_read.linework import WALL_MM
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.shapes import TIE_MM, is_thin, tidy
 from satAOI_adapters.dxf_read.terms import Terms
-from satAOI_adapters.dxf_read.wording import are, counted
 from satAOI_adapters.layers import without_xref_prefix
+from satAOI_adapters.wording import are, counted
 from satAOI_geo.errors import EmptyPlanError
 from satAOI_geo.plan import Finding, Kind, Obstacle, Region, polygons_in
 

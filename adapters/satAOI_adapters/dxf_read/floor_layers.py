@@ -23,7 +23,7 @@ from satAOI_adapters.dxf_read.shapes import (
     tidy,
 )
 from satAOI_adapters.dxf_read.terms import Terms
-from satAOI_adapters.dxf_read.wording import are, counted
+from satAOI_adapters.wording import are, counted
 from satAOI_geo.errors import DrawingError
 from satAOI_geo.plan import Finding, Obstacle, Region, geometry_of, polygons_in
 

@@ -33,6 +33,7 @@ from satAOI_adapters.dxf_read.plans import Drawn
 from satAOI_adapters.dxf_read.shapes import middle_line
 from satAOI_adapters.dxf_read.swings import LEAF_SLACK_MM, LEAST_LEAF_MM, parted, swings
 from satAOI_adapters.layers import Meaning
+from satAOI_adapters.wording import counted
 from satAOI_geo.plan import Finding, Frame, Obstacle, Region
 
 BESIDE_MM: Final = 1000.0
@@ -191,8 +192,8 @@ def _inner(found: Sequence[Glazing], frame: Frame) -> Finding:
     placed = found[0].pieces[0].placed
     return Finding(
         "window-between-rooms",
-        f"{len(found)} windows stand between floor and floor and stop the robot, at {named}{more} "
-        "mm",
+        f"the robot does not pass {counted(len(found), 'window')} between floor and floor, at "
+        f"{named}{more} mm",
         "draw doors that show no swing, such as shutters, on a layer of doors",
         layer=placed.layer,
         handle=placed.handle,

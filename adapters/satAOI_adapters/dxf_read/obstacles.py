@@ -35,6 +35,7 @@ from satAOI_adapters.dxf_read.shapes import (
 )
 from satAOI_adapters.dxf_read.swings import LEAST_LEAF_MM
 from satAOI_adapters.dxf_read.terms import Terms
+from satAOI_adapters.wording import are, counted
 from satAOI_geo.plan import Circle, Finding, Kind, Obstacle, Shape, geometry_of, polygons_in
 
 COVERED_MM: Final = 1e-3
@@ -302,8 +303,9 @@ def _filled(thin: Sequence[Polygon]) -> Iterable[Finding]:
     if thin:
         yield Finding(
             "wall-filled",
-            f"{len(thin)} closed spaces between wall lines, {_area_m2(thin):.2f} m² together and "
-            f"nowhere wider than {WALL_MM:g} mm, are taken as the insides of walls",
+            f"{counted(len(thin), 'closed space')} between wall lines, {_area_m2(thin):.2f} m² "
+            f"together and nowhere wider than {WALL_MM:g} mm, {are(len(thin))} taken for the "
+            "insides of walls",
             "draw walls filled or as closed outlines if one of them is free floor",
         )
 
@@ -314,9 +316,9 @@ def _thick(thick: Sequence[Polygon], terms: Terms) -> Iterable[Finding]:
         x_mm, y_mm = terms.place((spot.x, spot.y))
         yield Finding(
             "wall-thick",
-            f"{len(thick)} closed spaces between wall lines, {_area_m2(thick):.2f} m² together, "
-            f"{WALL_MM:g} to {THICK_MM:g} mm wide and without a door, are taken as thick walls, "
-            f"the first at ({x_mm:.1f}, {y_mm:.1f}) mm",
+            f"{counted(len(thick), 'closed space')} between wall lines, {_area_m2(thick):.2f} m² "
+            f"together, {WALL_MM:g} to {THICK_MM:g} mm wide and without a door, "
+            f"{are(len(thick))} taken for thick walls, the first at ({x_mm:.1f}, {y_mm:.1f}) mm",
             "break the wall lines at the door if one of them is a room",
             at_mm=(x_mm, y_mm),
         )

@@ -19,6 +19,7 @@ from satAOI_adapters.dxf_read.encodings import decoded
 from satAOI_adapters.dxf_read.entities import DRAWN
 from satAOI_adapters.ezdxf_log import heard
 from satAOI_adapters.layers import LayerTable
+from satAOI_adapters.wording import counted
 from satAOI_geo.errors import UnreadableError
 from satAOI_geo.plan import Finding
 
@@ -146,7 +147,7 @@ def _repairs(said: list[str]) -> tuple[Finding, ...]:
     return (
         Finding(
             "file-flaws",
-            f"{len(said)} flaws in the file were noticed while reading, the first: "
+            f"{counted(len(said), 'flaw')} in the file, noticed while reading; the first: "
             f"{_one_line(said[0])}",
             "run the audit of a CAD program over it if something is missing",
         ),

@@ -22,6 +22,7 @@ from satAOI_adapters.dxf_read.obstacles import Standing
 from satAOI_adapters.dxf_read.openings import PLACES, Span, as_one, depth_at, shut, walls_at
 from satAOI_adapters.dxf_read.swings import Swing
 from satAOI_adapters.dxf_read.terms import Terms
+from satAOI_adapters.wording import are, counted
 from satAOI_geo.plan import Finding, Obstacle
 
 JAMBS_MM: Final = (20.0, 60.0, 100.0)
@@ -96,8 +97,9 @@ def _finding(lines: Sequence[Obstacle], terms: Terms) -> Finding:
     x_mm, y_mm = terms.frame.to_drawing_mm(shapely.get_coordinates(first.region())[:1])[0]
     return Finding(
         "threshold",
-        f"{len(lines)} lines from jamb to jamb where doors swing are taken as thresholds, which do "
-        f"not stop the robot, the first at ({x_mm:.1f}, {y_mm:.1f}) mm on layer '{first.layer}'",
+        f"{counted(len(lines), 'line')} from jamb to jamb where doors swing {are(len(lines))} "
+        "taken for thresholds, which do not stop the robot, the first at "
+        f"({x_mm:.1f}, {y_mm:.1f}) mm on layer '{first.layer}'",
         "draw what is no threshold on another layer",
         layer=first.layer,
         handle=first.handle,

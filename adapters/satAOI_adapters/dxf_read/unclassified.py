@@ -20,6 +20,7 @@ from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.plans import rough_lines
 from satAOI_adapters.dxf_read.rooms import rooms_among
 from satAOI_adapters.dxf_read.shapes import TIE_MM, shapes_of
+from satAOI_adapters.wording import are, counted
 from satAOI_geo.plan import Finding, Frame, Kind, Obstacle, Region
 
 PEN_MM: Final = 100.0
@@ -39,27 +40,32 @@ LEFT_OUT: Final = "unclassified-left-out"
 
 SAID: Final = {
     NAMELESS: (
-        "closed shapes {where}, are taken as obstacles: the layer's name says nothing",
+        "closed shape",
+        "taken for obstacles: the layer's name says nothing",
         SAY_WHAT,
     ),
     CROSSED: (
-        "rectangles {where}, are crossed by their diagonals, as openings are: they are obstacles",
+        "rectangle",
+        "taken for openings, since diagonals cross there, and stop the robot",
         SAY_WHAT,
     ),
     ROOM: (
-        "closed outlines {where}, run along walls or each other: they are rooms, not obstacles",
+        "closed outline",
+        "taken for rooms, not for obstacles, since walls or others run along there",
         f"{SAY_WHAT} if one of them is a pit or stops the robot",
     ),
     DASHED: (
-        "closed outlines {where}, are dashed, as things overhead or underground: they are left out",
+        "dashed outline",
+        "left out: things overhead or underground are drawn so",
         "draw them continuous, or name the layer in a file for --layers, if they stop the robot",
     ),
     CLOUD: (
-        "outlines of bows {where}, are taken as revision clouds and left out",
+        "outline",
+        "taken for revision clouds, since made of bows, and left out",
         f"{SAY_WHAT} if they stop the robot",
     ),
 }
-"""What is said of each sort of shape, and what the user can do."""
+"""What each sort of shape is called, what is said of it, and what the user can do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,7 +194,7 @@ def _left_out(loose: Sequence[Feature], floor: Region, frame: Frame) -> list[Fin
             Finding(
                 LEFT_OUT,
                 f"{_counted(len(entities) - n_patterns, n_patterns)} on layer '{layer}' on the "
-                "floor are left out: the layer's name says nothing",
+                f"floor {are(len(entities))} left out: the layer's name says nothing",
                 f"{SAY_WHAT} if they stop the robot",
                 layer=layer,
                 handle=first.placed.handle,
@@ -199,8 +205,8 @@ def _left_out(loose: Sequence[Feature], floor: Region, frame: Frame) -> list[Fin
 
 
 def _counted(n_lines: int, n_patterns: int) -> str:
-    said = [(n_lines, "open lines"), (n_patterns, "patterns")]
-    return " and ".join(f"{count} {what}" for count, what in said if count)
+    said = [(n_lines, "open line"), (n_patterns, "pattern")]
+    return " and ".join(counted(count, what) for count, what in said if count)
 
 
 def _closed(feature: Feature) -> list[Thing]:
@@ -230,11 +236,12 @@ def _found(code: str, things: Sequence[Obstacle], frame: Frame) -> list[Finding]
     by_layer: defaultdict[str, list[Obstacle]] = defaultdict(list)
     for thing in things:
         by_layer[thing.layer].append(thing)
-    message, remedy = SAID[code]
+    noun, said, remedy = SAID[code]
     return [
         Finding(
             code,
-            f"{len(on_layer)} {message.format(where=_where(layer, on_layer))}",
+            f"{counted(len(on_layer), noun)} {_where(layer, on_layer)}, {are(len(on_layer))} "
+            f"{said}",
             remedy,
             layer=layer,
             handle=on_layer[0].handle,

@@ -27,6 +27,7 @@ from satAOI_adapters.ifc_read.model import body_items, handle_of, openings_of
 from satAOI_adapters.ifc_read.prisms import RECESS_MM, View, as_polygon
 from satAOI_adapters.ifc_read.records import Storey
 from satAOI_adapters.ifc_read.site import Site
+from satAOI_adapters.wording import counted
 from satAOI_geo.errors import EmptyPlanError
 from satAOI_geo.plan import Region, as_region
 from satAOI_geo.units import MM2_PER_M2
@@ -186,8 +187,8 @@ def _spaces(site: Site, height_mm: float) -> Region | None:
         return None
     site.notes.add(
         "floor-from-spaces",
-        f"no slab lies at the floor's height; {len(rooms)} spaces and the doorways between them "
-        "were taken for the floor",
+        f"no slab lies at the floor's height; {counted(len(rooms), 'space')} and the doorways "
+        "between them were taken for the floor",
         "model the floor as IfcSlab",
     )
     return as_region(shapely.union_all([*rooms, *_doorways(site, view)]))

@@ -15,6 +15,7 @@ from satAOI_adapters.ifc_read.ground import Ground, ground_of
 from satAOI_adapters.ifc_read.model import body_items, handle_of
 from satAOI_adapters.ifc_read.records import Storey
 from satAOI_adapters.ifc_read.site import Site, Standing, called
+from satAOI_adapters.wording import are, counted
 from satAOI_geo.errors import DrawingError, EmptyPlanError
 from satAOI_geo.plan import Finding, Kind, Obstacle, Region, polygons_in
 from satAOI_geo.units import MM2_PER_M2
@@ -236,7 +237,7 @@ def _note_the_rest(site: Site, *, n_outside: int, obstacles: Sequence[Obstacle])
     if n_outside:
         site.notes.add(
             "outside-floor",
-            f"{n_outside} elements stand beside the floor and were left out",
+            f"{counted(n_outside, 'element')} beside the floor {are(n_outside)} left out",
             "",
         )
     if not obstacles:
