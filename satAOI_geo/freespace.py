@@ -9,9 +9,8 @@ from typing import TypeVar
 import numpy as np
 
 from satAOI_geo.engine import Engine
-from satAOI_geo.kernels import kernel
 from satAOI_geo.lattice import WORD_BITS, Lattice, Words
-from satAOI_geo.nodes import Nodes
+from satAOI_geo.nodes import ONE, Nodes
 from satAOI_geo.plan import BoolArray, IntArray
 from satAOI_geo.robot import Part, Robot
 from satAOI_geo.sweep import carried, turned
@@ -42,13 +41,23 @@ class FreeSpace:
         """Nodes at which some pose is free."""
         return Nodes(np.bitwise_or.reduce(self.words, axis=(0, 1)), self.lattice.n_columns)
 
-    def steps(self, a1: int, *, rows_up: int) -> Words:
-        """Nodes from which the disc may step up (rows_up 1) or right (0), the pose kept.
+    def barred_steps(self, a1: int, *, rows_up: int) -> IntArray:
+        """Nodes from which something bars a step up (rows_up 1) or right (0), the pose kept.
 
-        Shape (n_swings, n_rows, n_words).
+        Shape (n,), numbers of their bits among all of `words[a1]`, ascending.
         """
-        steps: Words = np.empty_like(self.words[a1])
-        _steps(self.words[a1], self.barred[a1], rows_up, steps)
+        swing, way, iy, ix = self.barred[a1].T
+        _, _, n_rows, n_words = self.words.shape
+        return np.unique(((swing * n_rows + iy) * n_words * WORD_BITS + ix)[way == rows_up])
+
+    def steps_up(self, a1: int) -> Words:
+        """Nodes from which the disc may step up: shape (n_swings, n_rows, n_words)."""
+        free = self.words[a1]
+        steps: Words = np.zeros_like(free)
+        steps[:, :-1] = free[:, :-1] & free[:, 1:]
+        barred = self.barred_steps(a1, rows_up=1)
+        mask = ~(ONE << (barred % WORD_BITS).astype(np.uint64))
+        np.bitwise_and.at(steps.reshape(-1), barred // WORD_BITS, mask)
         return steps
 
 
@@ -61,8 +70,8 @@ class Move:
         swing: Swing number of the pose it starts from.
         to_a1: Direction number of the pose it ends at.
         to_swing: Swing number of the pose it ends at.
-        unless_vehicle: Nodes at which it touches nothing but perhaps with the vehicle on its way:
-            those in all three.
+        arm_free: Nodes at which the arm touches nothing on its way, of those at least at which both
+            ends are free.
         sweep: What the vehicle sweeps.
     """
 
@@ -70,17 +79,17 @@ class Move:
     swing: int
     to_a1: int
     to_swing: int
-    unless_vehicle: tuple[Words, Words, Words]
+    arm_free: Words
     sweep: Part
 
     def allowed(self, engine: Engine, rows: BoolArray | None = None) -> Words:
-        """Nodes at which it may be made: both ends and all between them touch nothing.
+        """Nodes at which it may be made, if both of its ends are free there.
 
-        Where `rows`, shape (n_rows,), are asked for, only their nodes.
+        Where `rows`, shape (n_rows,), are asked for, those of the others mean nothing.
         """
         words = engine.blocked(self.sweep, rows)
-        asked = np.ones(len(words), dtype=np.bool_) if rows is None else rows
-        _allow(words, *self.unless_vehicle, asked)
+        np.invert(words, out=words)
+        words &= self.arm_free
         return words
 
 
@@ -115,40 +124,62 @@ def free_space(
     return FreeSpace(lattice, words, tuple(barred))
 
 
-def moves(engine: Engine, robot: Robot, space: FreeSpace, a1: int) -> Iterator[Move]:
+@dataclass(frozen=True, slots=True)
+class Sweeps:
+    """What the parts of a robot sweep in its moves about a node.
+
+    Attributes:
+        arms: Of the arm as it turns from each direction to the next.
+        turns: Of the vehicle as the robot turns about the disc, from each direction and, in each,
+            from each swing.
+        swings: Of the vehicle as it turns about its pivot, in the same order.
+        orbits: Of the vehicle as its pivot turns about the disc, its heading kept.
+    """
+
+    arms: list[Part]
+    turns: list[Part]
+    swings: list[Part]
+    orbits: list[Part]
+
+    @classmethod
+    def of(cls, robot: Robot, lattice: Lattice) -> "Sweeps":
+        """Those of all directions together, which takes little longer than those of one."""
+        directions = lattice.directions()
+        turn_rad, disc_mm = 2 * np.pi / lattice.n_directions, np.zeros(2)
+        pivots_mm = np.repeat(robot.arm_length_mm * directions, len(lattice.swings), axis=0)
+        vehicles = [
+            vehicle for a1 in range(len(directions)) for vehicle in _vehicles(robot, lattice, a1)
+        ]
+        return cls(
+            turned([robot.capsule(arm) for arm in directions], disc_mm, turn_rad),
+            turned(vehicles, disc_mm, turn_rad),
+            turned(vehicles, pivots_mm, turn_rad),
+            carried(vehicles, pivots_mm, turn_rad),
+        )
+
+
+def moves(engine: Engine, sweeps: Sweeps, space: FreeSpace, a1: int) -> Iterator[Move]:
     """All moves about a node from the poses of one direction.
 
     Each kind is listed once; the way back is the same move.
     """
-    lattice = space.lattice
-    n_directions, n_swings = lattice.n_directions, len(lattice.swings)
-    turn_rad = 2 * np.pi / n_directions
-    arm, next_a1 = lattice.directions()[a1], (a1 + 1) % n_directions
-    pivot_mm, disc_mm = robot.arm_length_mm * arm, np.zeros(2)
-    (arm_turned,) = turned([robot.capsule(arm)], disc_mm, turn_rad)
-    arm_turns = ~engine.blocked(arm_turned)
-
-    vehicles = _vehicles(robot, lattice, a1)
-    about_disc = turned(vehicles, disc_mm, turn_rad)
-    about_pivot = turned(vehicles, pivot_mm, turn_rad)
-    orbits = carried(vehicles, pivot_mm, turn_rad)
-
+    n_directions, n_swings = space.lattice.n_directions, len(space.lattice.swings)
+    next_a1 = (a1 + 1) % n_directions
+    arm_turns = ~engine.blocked(sweeps.arms[a1])
     # a swing range of a full turn is a ring: its last swing is beside its first
     is_ring = n_swings == n_directions
     for swing in range(n_swings):
-        free, next_free = space.words[a1, swing], space.words[next_a1]
-        ends = free, next_free[swing], arm_turns
-        yield Move(a1, swing, next_a1, swing, ends, about_disc[swing])
+        vehicle = a1 * n_swings + swing
+        yield Move(a1, swing, next_a1, swing, arm_turns, sweeps.turns[vehicle])
 
         wider = _neighbour(swing + 1, n_swings, ring=is_ring)
         if wider is not None:
-            ends = free, free, space.words[a1, wider]
-            yield Move(a1, swing, a1, wider, ends, about_pivot[swing])
+            free = space.words[a1, swing]
+            yield Move(a1, swing, a1, wider, free, sweeps.swings[vehicle])
 
         narrower = _neighbour(swing - 1, n_swings, ring=is_ring)
         if narrower is not None:
-            ends = free, next_free[narrower], arm_turns
-            yield Move(a1, swing, next_a1, narrower, ends, orbits[swing])
+            yield Move(a1, swing, next_a1, narrower, arm_turns, sweeps.orbits[vehicle])
 
 
 def _vehicles(robot: Robot, lattice: Lattice, a1: int) -> list[Part]:
@@ -174,39 +205,6 @@ def run_threads(
             if progress is not None:
                 progress(len(answers) / n_jobs)
     return answers
-
-
-@kernel(
-    "void(uint64[:, :], const uint64[:, :], const uint64[:, :], const uint64[:, :], const bool[:])"
-)
-def _allow(words: Words, a: Words, b: Words, c: Words, rows: BoolArray) -> None:
-    """Turn what is blocked into what three sets have besides, in some rows; none in the others."""
-    n_rows, n_words = words.shape
-    for iy in range(n_rows):
-        for word in range(n_words):
-            both = a[iy, word] & b[iy, word] & c[iy, word] if rows[iy] else np.uint64(0)
-            words[iy, word] = both & ~words[iy, word]
-
-
-@kernel("void(const uint64[:, :, :], const int64[:, :], int64, uint64[:, :, :])")
-def _steps(free: Words, barred: IntArray, rows_up: int, steps: Words) -> None:
-    """Write the nodes from which a step leads to a free neighbour; see `FreeSpace.steps`."""
-    n_swings, n_rows, n_words = free.shape
-    for swing in range(n_swings):
-        for iy in range(n_rows):
-            row, beyond = free[swing, iy], steps[swing, iy]
-            for word in range(n_words):
-                if rows_up:
-                    beyond[word] = free[swing, iy + 1, word] if iy + 1 < n_rows else np.uint64(0)
-                else:
-                    beyond[word] = row[word] >> np.uint64(1)
-                    if word + 1 < n_words:
-                        beyond[word] |= row[word + 1] << np.uint64(WORD_BITS - 1)
-                beyond[word] &= row[word]
-    for k in range(barred.shape[0]):
-        if barred[k, 1] == rows_up:
-            swing, iy, ix = barred[k, 0], barred[k, 2], barred[k, 3]
-            steps[swing, iy, ix // WORD_BITS] &= ~(np.uint64(1) << np.uint64(ix % WORD_BITS))
 
 
 def _cores() -> int:

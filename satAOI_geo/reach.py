@@ -21,8 +21,8 @@ import numpy as np
 import numpy.typing as npt
 
 from satAOI_geo.engine import Engine
-from satAOI_geo.freespace import FreeSpace, Move, moves, run_threads
-from satAOI_geo.lattice import Lattice
+from satAOI_geo.freespace import FreeSpace, Move, Sweeps, moves, run_threads
+from satAOI_geo.lattice import WORD_BITS, Lattice
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.robot import Robot
 from satAOI_geo.runs import (
@@ -31,6 +31,7 @@ from satAOI_geo.runs import (
     Runs,
     SliceRuns,
     numbered,
+    roots,
     rows_of,
     unite,
     unite_upwards,
@@ -136,23 +137,26 @@ class Band:
         n_directions, n_swings, n_rows, n_words = space.words.shape
 
         def gather(a1: int) -> SliceRuns:
-            free, right = space.words[a1], space.steps(a1, rows_up=0)
-            return SliceRuns.of(free.reshape(-1, n_words), right.reshape(-1, n_words))
+            free, barred = space.words[a1], space.barred_steps(a1, rows_up=0)
+            return SliceRuns.of(free.reshape(-1, n_words), barred)
 
         share = _thirds(progress)
         parts = run_threads(gather, n_directions, share[0])
         runs = Runs.joined(parts, (n_directions, n_swings, n_rows))
-        joined = _Joined(engine, runs)
+        joined, sweeps = _Joined(engine, runs), Sweeps.of(robot, lattice)
 
         def step_up(a1: int) -> None:
             # no other direction has these runs, so threads need not wait for each other
-            unite_upwards(joined.parents, runs, a1, space.steps(a1, rows_up=1))
+            barred = space.barred_steps(a1, rows_up=1)
+            unite_upwards(joined.parents, runs, a1, barred, n_words * WORD_BITS)
 
         def move(a1: int) -> None:
-            for each in moves(engine, robot, space, a1):
+            for each in moves(engine, sweeps, space, a1):
                 joined.by_move(each)
 
         run_threads(step_up, n_directions, share[1])
+        # runs whose parents are roots are compared quickly
+        roots(joined.parents)
         run_threads(move, n_directions, share[2])
         labels, n_sets = numbered(joined.parents)
         label, iy, begin, end = of_runs(runs, labels, n_sets)
@@ -306,11 +310,11 @@ class _Joined:
         What the vehicle sweeps is looked at only where that could still join two components.
         """
         meeting = Meeting.of(self._runs, (move.a1, move.swing), (move.to_a1, move.to_swing))
-        rows = meeting.rows_apart(self.parents, move.unless_vehicle)
+        rows = meeting.rows_apart(self.parents, move.arm_free)
         if rows.any():
-            pairs = meeting.links(move.allowed(self._engine, rows))
+            allowed = move.allowed(self._engine, rows)
             with self._one_at_a_time:
-                unite(self.parents, pairs)
+                meeting.join(self.parents, allowed, rows)
 
 
 def _thirds(progress: Callable[[float], None] | None) -> list[Callable[[float], None] | None]:

@@ -16,7 +16,7 @@ import scipy.sparse
 from scipy.sparse.csgraph import breadth_first_order
 
 from satAOI_geo.errors import LimitError, NoRouteError
-from satAOI_geo.freespace import free_space, moves, run_threads
+from satAOI_geo.freespace import Sweeps, free_space, moves, run_threads
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.reach import State
 from satAOI_geo.robot import Pose
@@ -156,14 +156,15 @@ class RouteMap:
         inside = np.zeros(self._rows.size, dtype=np.bool_)
         inside[self._runs] = True
         space = free_space(found.engine, found.robot, found.lattice)
+        sweeps = Sweeps.of(found.robot, found.lattice)
 
         def gather(a1: int) -> npt.NDArray[np.int32]:
             runs = self._band.runs
             pairs = [
                 Meeting.upwards(runs, (a1, swing)).links(allowed)
-                for swing, allowed in enumerate(space.steps(a1, rows_up=1))
+                for swing, allowed in enumerate(space.steps_up(a1))
             ]
-            for move in moves(found.engine, found.robot, space, a1):
+            for move in moves(found.engine, sweeps, space, a1):
                 ends = (move.a1, move.swing), (move.to_a1, move.to_swing)
                 pairs.append(Meeting.of(runs, *ends).links(move.allowed(found.engine)))
             return np.concatenate([some[inside[some[:, 0]]] for some in pairs])

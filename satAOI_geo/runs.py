@@ -5,18 +5,24 @@ states of a hall make some 10⁶ runs; connectivity is union-find over these.
 """
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from satAOI_geo.intervals import set_bits
-from satAOI_geo.kernels import helper, kernel
-from satAOI_geo.lattice import Lattice, Words
-from satAOI_geo.nodes import Nodes, from_right, n_bits
+from satAOI_geo.kernels import filled, helper, kernel
+from satAOI_geo.lattice import WORD_BITS, Lattice, Words
+from satAOI_geo.nodes import Nodes, n_bits
 from satAOI_geo.plan import BoolArray, IntArray
 
 Int32Array: TypeAlias = npt.NDArray[np.int32]
+
+N_RUNS_A_ROW: Final = 8
+"""Runs that there is room for at first in each row."""
+
+NOWHERE: Final = np.empty(0, dtype=np.int64)
+"""No steps."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,14 +94,18 @@ class SliceRuns:
     end: Int32Array
 
     @classmethod
-    def of(cls, free: Words, right: Words) -> "SliceRuns":
-        """The runs from free nodes and the steps to the right among them, (n_rows, n_words)."""
-        first = np.zeros(free.shape[0] + 1, dtype=np.int64)
-        _count_runs(free, right, first)
-        np.cumsum(first, out=first)
-        begin = np.empty(first[-1], dtype=np.int32)
-        end = np.empty(first[-1], dtype=np.int32)
-        _fill_runs(free, right, first, begin, end)
+    def of(cls, free: Words, barred: IntArray) -> "SliceRuns":
+        """The runs of rows of free nodes.
+
+        Args:
+            free: Shape (n_rows, n_words).
+            barred: Shape (n,), the nodes from which the disc may not step to the right, as numbers
+                of their bits among all of these words, ascending.
+        """
+        first = np.empty(len(free) + 1, dtype=np.int64)
+        # of what there is room for only what is written to takes memory
+        room = np.empty((N_RUNS_A_ROW * len(free), 2), dtype=np.int32)
+        begin, end = filled(lambda runs: _gather(free, barred, first, runs), room).T
         return cls(first, begin, end)
 
 
@@ -106,23 +116,25 @@ class Meeting:
     Attributes:
         first_a: Shape (n_rows + 1,), for each row where it starts the first of its runs.
         first_b: The same for the row that it ends at.
+        begin: First column of all runs.
         end: Last column of all runs.
     """
 
     first_a: IntArray
     first_b: IntArray
+    begin: Int32Array
     end: Int32Array
 
     @classmethod
     def of(cls, runs: Runs, pose: tuple[int, int], to_pose: tuple[int, int]) -> "Meeting":
         """The runs of a pose, (a1, swing), and those of another at the same nodes."""
-        return cls(runs.first[pose], runs.first[to_pose], runs.end)
+        return cls(runs.first[pose], runs.first[to_pose], runs.begin, runs.end)
 
     @classmethod
     def upwards(cls, runs: Runs, pose: tuple[int, int]) -> "Meeting":
         """The runs of a pose, (a1, swing), and those of the row above it; none above the last."""
         first = runs.first[pose]
-        return cls(first, np.append(first[1:], first[-1]), runs.end)
+        return cls(first, np.append(first[1:], first[-1]), runs.begin, runs.end)
 
     def links(self, allowed: Words) -> Int32Array:
         """The pairs of runs that a move leads between, given the nodes it may start from.
@@ -133,21 +145,29 @@ class Meeting:
         first_a, first_b = self.first_a, self.first_b
         # two sorted rows of runs overlap in fewer pairs than there are runs in both
         found = np.empty((first_a[-1] - first_a[0] + first_b[-1] - first_b[0], 3), dtype=np.int32)
-        return found[: _links(allowed, first_a, first_b, self.end, found)]
+        return found[: _links(allowed, first_a, first_b, self.begin, self.end, found)]
 
-    def rows_apart(self, parents: Int32Array, ends: tuple[Words, Words, Words]) -> BoolArray:
+    def rows_apart(self, parents: Int32Array, allowed: Words) -> BoolArray:
         """The rows in which a move could join two components of the forest `parents`.
 
-        It can be made at most at the nodes in all three sets `ends`, where both its ends are free.
+        It may start from no other nodes than the allowed ones.
         """
-        apart = np.empty(self.first_a.size - 1, dtype=np.bool_)
-        _rows_apart(parents, *ends, self.first_a, self.first_b, self.end, apart)
-        return apart
+        rows = np.empty(self.first_a.size - 1, dtype=np.bool_)
+        self._compare(parents, allowed, rows, join=False)
+        return rows
+
+    def join(self, parents: Int32Array, allowed: Words, rows: BoolArray) -> None:
+        """Join the runs that a move leads between in some rows, given where it may start from."""
+        self._compare(parents, allowed, rows, join=True)
+
+    def _compare(self, parents: Int32Array, allowed: Words, rows: BoolArray, *, join: bool) -> None:
+        """See the kernel."""
+        _compare(parents, allowed, self.first_a, self.first_b, self.begin, self.end, rows, join)
 
 
 def rows_of(nodes: Nodes) -> SliceRuns:
     """The stretches of a set's nodes, row by row."""
-    return SliceRuns.of(nodes.words, nodes.words & from_right(nodes.words))
+    return SliceRuns.of(nodes.words, NOWHERE)
 
 
 def unite(parents: Int32Array, pairs: Int32Array) -> None:
@@ -155,16 +175,18 @@ def unite(parents: Int32Array, pairs: Int32Array) -> None:
     _unite(parents, pairs)
 
 
-def unite_upwards(parents: Int32Array, runs: Runs, a1: int, allowed: Words) -> None:
+def unite_upwards(parents: Int32Array, runs: Runs, a1: int, barred: IntArray, n_bits: int) -> None:
     """Join the runs of a direction's poses that steps from row to row lead between.
 
     Args:
         parents: The forest, shape (n_runs,). Only what belongs to these runs is read and changed.
         runs: All runs.
         a1: The direction.
-        allowed: Shape (n_swings, n_rows, n_words), the nodes from which the disc may step up.
+        barred: Shape (n,), the nodes from which the disc may not step up, as numbers of their bits
+            among those of all swings and rows, ascending.
+        n_bits: How many bits a row has.
     """
-    _unite_upwards(parents, allowed, runs.first[a1], runs.end)
+    _unite_upwards(parents, runs.first[a1], runs.begin, runs.end, barred, n_bits)
 
 
 def numbered(parents: Int32Array) -> tuple[Int32Array, int]:
@@ -184,123 +206,167 @@ def paint(words: Words, row: Int32Array, begin: Int32Array, end: Int32Array) -> 
     _paint(words, row, begin, end)
 
 
-@kernel("void(const uint64[:, :], const uint64[:, :], int64[:])")
-def _count_runs(free: Words, right: Words, first: IntArray) -> None:
-    """Write how many runs begin in row iy to first[iy + 1]."""
-    for iy in range(free.shape[0]):
-        carry = np.uint64(0)
-        n = 0
-        for word in range(free.shape[1]):
-            stepped = right[iy, word]
-            n += n_bits(free[iy, word] & ~(stepped << np.uint64(1) | carry))
-            carry = stepped >> np.uint64(63)
-        first[iy + 1] = n
+@kernel("int64(const uint64[:, :], const int64[:], int64[:], int32[:, :])")
+def _gather(free: Words, barred: IntArray, first: IntArray, runs: Int32Array) -> int:
+    """Write first and last column of every run, and which is the first of each row; how many.
 
-
-@kernel("void(const uint64[:, :], const uint64[:, :], const int64[:], int32[:], int32[:])")
-def _fill_runs(
-    free: Words, right: Words, first: IntArray, begin: Int32Array, end: Int32Array
-) -> None:
-    """Write first and last column of every run."""
-    for iy in range(free.shape[0]):
-        carry = np.uint64(0)
-        n_begun = n_ended = first[iy]
-        for word in range(free.shape[1]):
-            stepped = right[iy, word]
-            begins = free[iy, word] & ~(stepped << np.uint64(1) | carry)
-            ends = free[iy, word] & ~stepped
-            carry = stepped >> np.uint64(63)
+    Args:
+        free: See `SliceRuns.of`, as is the next one.
+        barred: Steps to the right.
+        first: Room for the runs' numbers, one more than there are rows.
+        runs: Room for two columns a run.
+    """
+    n_rows, n_words = free.shape
+    n_begun = n_ended = step = 0
+    next_barred = barred[0] if barred.size else n_rows * n_words * WORD_BITS
+    for iy in range(n_rows):
+        first[iy] = n_begun
+        before = np.uint64(0)
+        bits = free[iy, 0]
+        for word in range(n_words):
+            after = free[iy, word + 1] if word + 1 < n_words else np.uint64(0)
+            stepped = bits & (bits >> np.uint64(1) | after << np.uint64(63))
+            while next_barred < (iy * n_words + word + 1) * WORD_BITS:
+                stepped &= ~(np.uint64(1) << np.uint64(next_barred & 63))
+                step += 1
+                next_barred = barred[step] if step < barred.size else n_rows * n_words * WORD_BITS
+            begins = bits & ~(stepped << np.uint64(1) | before)
+            ends = bits & ~stepped
+            before = stepped >> np.uint64(63)
+            bits = after
             while begins:
-                begin[n_begun] = word * 64 + lowest_bit(begins)
+                if n_begun < len(runs):
+                    runs[n_begun, 0] = word * WORD_BITS + lowest_bit(begins)
                 begins &= begins - np.uint64(1)
                 n_begun += 1
             while ends:
-                end[n_ended] = word * 64 + lowest_bit(ends)
+                if n_ended < len(runs):
+                    runs[n_ended, 1] = word * WORD_BITS + lowest_bit(ends)
                 ends &= ends - np.uint64(1)
                 n_ended += 1
+    first[n_rows] = n_begun
+    return n_begun
 
 
-@kernel("int64(const uint64[:, :], const int64[:], const int64[:], const int32[:], int32[:, :])")
+@kernel(
+    "int64(const uint64[:, :], const int64[:], const int64[:], const int32[:], const int32[:], "
+    "int32[:, :])"
+)
 def _links(
-    allowed: Words, first_a: IntArray, first_b: IntArray, end: Int32Array, found: Int32Array
+    allowed: Words,
+    first_a: IntArray,
+    first_b: IntArray,
+    begin: Int32Array,
+    end: Int32Array,
+    found: Int32Array,
 ) -> int:
     """Write every two runs that an allowed move leads between; how many there are."""
     n = 0
     for iy in range(allowed.shape[0]):
         a, b = first_a[iy], first_b[iy]
-        ix = _next_bit(allowed[iy], 0)
-        while ix >= 0:
-            while end[a] < ix:
+        while a < first_a[iy + 1] and b < first_b[iy + 1]:
+            ix = _next_bit(allowed[iy], max(begin[a], begin[b]))
+            if 0 <= ix <= min(end[a], end[b]):
+                # one by one: assigning a tuple takes three seconds longer to compile
+                found[n, 0] = a
+                found[n, 1] = b
+                found[n, 2] = ix
+                n += 1
+            if end[a] < end[b]:
                 a += 1
-            while end[b] < ix:
+            else:
                 b += 1
-            # one by one: assigning a tuple takes three seconds longer to compile
-            found[n, 0] = a
-            found[n, 1] = b
-            found[n, 2] = ix
-            n += 1
-            # one allowed move links the two runs: the next that matters lies beyond either's end
-            ix = _next_bit(allowed[iy], min(end[a], end[b]) + 1)
     return n
 
 
 @kernel(
-    "void(const int32[:], const uint64[:, :], const uint64[:, :], const uint64[:, :], "
-    "const int64[:], const int64[:], const int32[:], bool[:])"
+    "void(int32[:], const uint64[:, :], const int64[:], const int64[:], const int32[:], "
+    "const int32[:], bool[:], bool)"
 )
-def _rows_apart(
+def _compare(
     parents: Int32Array,
-    free: Words,
-    to_free: Words,
-    between: Words,
+    allowed: Words,
     first_a: IntArray,
     first_b: IntArray,
+    begin: Int32Array,
     end: Int32Array,
-    apart: BoolArray,
+    rows: BoolArray,
+    join: bool,  # noqa: FBT001  kernels take no keywords
 ) -> None:
-    """Write for each row whether two runs that meet at a node of three sets have different roots.
+    """Find the runs of different roots that an allowed move leads between: join, or tell where.
 
-    It reads the forest only, which others may be changing: a root that is out of date makes two
-    runs look apart that no longer are, never the other way round.
+    To tell it takes no lock, though others may be changing the forest: a root that is out of date
+    makes two runs look apart that no longer are, never the other way round, and to halve a path
+    changes no root.
+
+    Args:
+        parents: The forest.
+        allowed: The nodes that the move may start from.
+        first_a: See `Meeting`, as are the next three.
+        first_b: Of the runs that it leads to.
+        begin: Of all runs.
+        end: Of all runs.
+        rows: Where runs are joined, the rows to do it in; else room for whether a row has any.
+        join: Whether to join them.
     """
-    for iy in range(free.shape[0]):
-        apart[iy] = False
+    for iy in range(allowed.shape[0]):
+        if join and not rows[iy]:
+            continue
+        rows[iy] = join
         a, b = first_a[iy], first_b[iy]
-        ix = _next_common_bit(free[iy], to_free[iy], between[iy], 0)
-        while ix >= 0:
-            while end[a] < ix:
-                a += 1
-            while end[b] < ix:
-                b += 1
-            if _found(parents, a) != _found(parents, b):
-                apart[iy] = True
-                break
-            ix = _next_common_bit(free[iy], to_free[iy], between[iy], min(end[a], end[b]) + 1)
-
-
-@helper
-def _found(parents: Int32Array, run: int) -> int:
-    """The root of a run, nothing changed on the way."""
-    while parents[run] != run:
-        run = parents[run]
-    return run
-
-
-@kernel("void(int32[:], const uint64[:, :, :], const int64[:, :], const int32[:])")
-def _unite_upwards(parents: Int32Array, allowed: Words, first: IntArray, end: Int32Array) -> None:
-    """Join every two runs that an allowed step up leads between; see `_links`."""
-    for swing in range(allowed.shape[0]):
-        for iy in range(allowed.shape[1] - 1):
-            row = allowed[swing, iy]
-            a, b = first[swing, iy], first[swing, iy + 1]
-            ix = _next_bit(row, 0)
-            while ix >= 0:
-                while end[a] < ix:
-                    a += 1
-                while end[b] < ix:
-                    b += 1
+        a_stop, b_stop = first_a[iy + 1], first_b[iy + 1]
+        while a < a_stop and b < b_stop:
+            ix, last_ix = max(begin[a], begin[b]), min(end[a], end[b])
+            # in this order: most runs have one parent, and of the others most do not meet
+            if (
+                parents[a] != parents[b]
+                and ix <= last_ix
+                and _root(parents, a) != _root(parents, b)
+                and 0 <= _next_bit(allowed[iy], ix) <= last_ix
+            ):
+                if not join:
+                    rows[iy] = True
+                    break
                 _unite_two(parents, a, b)
-                ix = _next_bit(row, min(end[a], end[b]) + 1)
+            if end[a] < end[b]:
+                a += 1
+            else:
+                b += 1
+
+
+@kernel("void(int32[:], const int64[:, :], const int32[:], const int32[:], const int64[:], int64)")
+def _unite_upwards(
+    parents: Int32Array,
+    first: IntArray,
+    begin: Int32Array,
+    end: Int32Array,
+    barred: IntArray,
+    n_bits_a_row: int,
+) -> None:
+    """Join every two runs that a step up leads between; see `unite_upwards`.
+
+    A step is free between any two free nodes but for those that are barred.
+    """
+    n_swings, n_ends = first.shape
+    step = 0
+    for swing in range(n_swings):
+        for iy in range(n_ends - 2):
+            row = (swing * (n_ends - 1) + iy) * n_bits_a_row
+            a, b = first[swing, iy], first[swing, iy + 1]
+            a_stop, b_stop = b, first[swing, iy + 2]
+            while a < a_stop and b < b_stop:
+                ix, last_ix = max(begin[a], begin[b]), min(end[a], end[b])
+                while step < barred.size and barred[step] < row + ix:
+                    step += 1
+                while step < barred.size and barred[step] == row + ix and ix <= last_ix:
+                    step += 1
+                    ix += 1
+                if ix <= last_ix:
+                    _unite_two(parents, a, b)
+                if end[a] < end[b]:
+                    a += 1
+                else:
+                    b += 1
 
 
 @kernel("void(int32[:], const int32[:, :])")
@@ -408,22 +474,15 @@ def _paint(words: Words, row: Int32Array, begin: Int32Array, end: Int32Array) ->
 @helper
 def _next_bit(row: Words, begin: int) -> int:
     """The first set bit of a row of words from `begin` on, or -1."""
-    return _next_common_bit(row, row, row, begin)
-
-
-@helper
-def _next_common_bit(a: Words, b: Words, c: Words, begin: int) -> int:
-    """The first bit from `begin` on that is set in three rows of words, or -1."""
     word = begin >> 6
-    if word >= a.size:
+    if word >= row.size:
         return -1
-    bits = a[word] & b[word] & c[word]
-    bits = bits >> np.uint64(begin & 63) << np.uint64(begin & 63)
+    bits = row[word] >> np.uint64(begin & 63) << np.uint64(begin & 63)
     while not bits:
         word += 1
-        if word == a.size:
+        if word == row.size:
             return -1
-        bits = a[word] & b[word] & c[word]
+        bits = row[word]
     return word * 64 + lowest_bit(bits)
 
 

@@ -26,23 +26,24 @@ def stepped(parts: Sequence[Part], step_mm: FloatArray) -> list[Part]:
     return _hulls(parts[0].radius_mm, corners_mm, corners_mm + step_mm)
 
 
-def turned(parts: Sequence[Part], pivot_mm: FloatArray, turn_rad: float) -> list[Part]:
-    """Parts turned about a pivot, shape (2,)."""
-    corners_mm = _corners_mm(parts)
-    arms_mm = corners_mm - pivot_mm
-    half_way_mm = pivot_mm + _rotated(arms_mm, turn_rad / 2) / math.cos(turn_rad / 2)
-    end_mm = pivot_mm + _rotated(arms_mm, turn_rad)
+def turned(parts: Sequence[Part], pivots_mm: FloatArray, turn_rad: float) -> list[Part]:
+    """Parts turned about a pivot, shape (2,), or about one each, shape (n_parts, 2)."""
+    corners_mm, pivots_mm = _corners_mm(parts), pivots_mm.reshape(-1, 1, 2)
+    arms_mm = corners_mm - pivots_mm
+    half_way_mm = pivots_mm + _rotated(arms_mm, turn_rad / 2) / math.cos(turn_rad / 2)
+    end_mm = pivots_mm + _rotated(arms_mm, turn_rad)
     return _hulls(parts[0].radius_mm, corners_mm, half_way_mm, end_mm)
 
 
-def carried(parts: Sequence[Part], pivot_mm: FloatArray, turn_rad: float) -> list[Part]:
+def carried(parts: Sequence[Part], pivots_mm: FloatArray, turn_rad: float) -> list[Part]:
     """Parts moved, their heading kept, along the arc that a pivot makes about the disc.
 
-    The pivot, shape (2,), is where they hang on at the start; the disc centre is the origin.
+    The pivots, shape (2,) or (n_parts, 2), are where they hang on at the start; the disc centre is
+    the origin.
     """
-    corners_mm = _corners_mm(parts)
-    half_way_mm = _rotated(pivot_mm, turn_rad / 2) / math.cos(turn_rad / 2) - pivot_mm
-    end_mm = _rotated(pivot_mm, turn_rad) - pivot_mm
+    corners_mm, pivots_mm = _corners_mm(parts), pivots_mm.reshape(-1, 1, 2)
+    half_way_mm = _rotated(pivots_mm, turn_rad / 2) / math.cos(turn_rad / 2) - pivots_mm
+    end_mm = _rotated(pivots_mm, turn_rad) - pivots_mm
     return _hulls(parts[0].radius_mm, corners_mm, corners_mm + half_way_mm, corners_mm + end_mm)
 
 

@@ -242,17 +242,22 @@ def test_steps_that_something_small_bars_are_those_of_the_slow_engine(name: str)
     space, lattice = setting.space(plan), setting.lattice(plan)
     slow = free_space(Reference(setting.collider(plan), lattice), robot, lattice)
     n_barred = 0
-    for a1, swing, rows_up in np.ndindex(lattice.n_directions, len(lattice.swings), 2):
-        found, expected = (some.steps(a1, rows_up=rows_up)[swing] for some in (space, slow))
-        assert np.array_equal(found, expected)
-        steps = Nodes(found, lattice.n_columns).as_array()
-        free = Nodes(space.words[a1, swing], lattice.n_columns).as_array()
+    for a1, rows_up in np.ndindex(lattice.n_directions, 2):
+        free = np.stack([Nodes(words, lattice.n_columns).as_array() for words in space.words[a1]])
         ahead = np.zeros_like(free)
         if rows_up:
-            ahead[:-1] = free[1:]
-        else:
             ahead[:, :-1] = free[:, 1:]
-        n_barred += np.count_nonzero(free & ahead & ~steps)
+        else:
+            ahead[..., :-1] = free[..., 1:]
+        bits = (*free.shape[:2], space.words.shape[-1] * 64)
+        found, expected = free & ahead, free & ahead
+        for steps, some in ((found, space), (expected, slow)):
+            steps[np.unravel_index(some.barred_steps(a1, rows_up=rows_up), bits)] = False
+        assert np.array_equal(found, expected)
+        if rows_up:
+            for steps, up in zip(found, space.steps_up(a1), strict=True):
+                assert np.array_equal(Nodes(up, lattice.n_columns).as_array(), steps)
+        n_barred += np.count_nonzero(free & ahead & ~found)
     assert n_barred > 0
 
 

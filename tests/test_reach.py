@@ -10,7 +10,7 @@ from shapely.geometry import LineString, box
 
 from satAOI_geo.collision import Collider, Reference
 from satAOI_geo.discs import covered_cells
-from satAOI_geo.freespace import FreeSpace, free_space, moves
+from satAOI_geo.freespace import FreeSpace, Sweeps, free_space, moves
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.nodes import Nodes
@@ -301,7 +301,7 @@ def test_pole_stops_the_moves_that_sweep_over_it(
         names[move.to_a1, move.to_swing]: bool(
             Nodes(move.allowed(engine), lattice.n_columns).as_array()[0, 0]
         )
-        for move in moves(engine, robot, space, 0)
+        for move in moves(engine, Sweeps.of(robot, lattice), space, 0)
         if move.swing == straight
     }
     assert all(space.is_free(0, 0, *pose) for pose in [(0, straight), *names])

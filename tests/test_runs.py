@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from satAOI_geo.lattice import Lattice, Words
 from satAOI_geo.nodes import Nodes
-from satAOI_geo.plan import BoolArray
+from satAOI_geo.plan import BoolArray, IntArray
 from satAOI_geo.runs import Meeting, Runs, SliceRuns, paint, roots, unite
 
 Stretch = tuple[int, int, int]
@@ -25,6 +25,12 @@ def lattice_of(shape: tuple[int, int]) -> Lattice:
 def bits(nodes: BoolArray) -> Words:
     """Nodes as bits."""
     return Nodes.of(nodes).words
+
+
+def barred(free: BoolArray, right: BoolArray) -> IntArray:
+    """The free nodes from which no step leads to the right, numbered as their bits are."""
+    iy, ix = np.nonzero(free & ~right)
+    return iy * 64 * bits(free).shape[1] + ix
 
 
 @st.composite
@@ -52,7 +58,7 @@ def stretches(free: BoolArray, right: BoolArray) -> list[Stretch]:
 
 def runs_of(*drawn: tuple[BoolArray, BoolArray]) -> Runs:
     """The runs of one direction whose swings are these slices."""
-    parts = [SliceRuns.of(bits(free), bits(right)) for free, right in drawn]
+    parts = [SliceRuns.of(bits(free), barred(free, right)) for free, right in drawn]
     return Runs.joined(parts, (1, len(parts), len(drawn[0][0])))
 
 
@@ -122,15 +128,24 @@ def test_runs_are_apart_in_the_rows_in_which_some_link_would_join_two_components
 ) -> None:
     runs = runs_of(*drawn)
     meeting = Meeting.of(runs, (0, 0), (0, 1))
-    some = np.random.default_rng(seed).random(drawn[0][0].shape) < 0.9
-    ends = [drawn[0][0], drawn[1][0], some]
-    links = meeting.links(bits(np.logical_and.reduce(ends)))
+    noise = np.random.default_rng(seed)
+    # a move may start from nodes in both runs only
+    allowed = bits(noise.random(drawn[0][0].shape) < noise.choice([0.02, 0.9]))
+    links = meeting.links(allowed)
     parents = np.arange(runs.begin.size, dtype=np.int32)
-    unite(parents, links[np.random.default_rng(seed).random(len(links)) < share])
-    apart = meeting.rows_apart(parents, tuple(map(bits, ends)))
-    root = roots(parents)
+    unite(parents, links[noise.random(len(links)) < share])
+    root = roots(parents.copy())
+    apart = meeting.rows_apart(parents, allowed)
     expected = {runs.rows()[a] for a, b, _ in links.tolist() if root[a] != root[b]}
     assert set(np.flatnonzero(apart).tolist()) == expected
+
+    some = noise.random(apart.size) < share
+    joined, within = parents.copy(), some[runs.rows()[links[:, 0]]]
+    meeting.join(joined, allowed, some)
+    unite(parents, links[within])
+    assert roots(joined).tolist() == roots(parents).tolist()
+    if share == 1.0:
+        assert not meeting.rows_apart(joined, allowed).any()
 
 
 @given(st.integers(1, 60), st.lists(st.tuples(st.integers(0, 59), st.integers(0, 59)), max_size=80))
