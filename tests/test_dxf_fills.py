@@ -214,5 +214,5 @@ def test_layer_that_the_user_leaves_out_stays_out(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("pattern", sorted(HATCHES))
 def test_names_of_hatches_are_names_to_be_left_out(pattern: str) -> None:
-    ignored = [r.patterns for r in layer_table().layers if r.meaning is Meaning.IGNORE]
+    ignored = [r.patterns.texts for r in layer_table().layers if r.meaning is Meaning.IGNORE]
     assert any(pattern in patterns for patterns in ignored)

@@ -122,22 +122,63 @@ class LayerMap:
 
 
 @dataclass(frozen=True, slots=True)
+class Patterns:
+    """Patterns in an order, sorted by how a name is compared with them.
+
+    Attributes:
+        texts: As written in the table, in their order.
+        names: Place in that order of each that is a name itself.
+        words: Of each that is a word, folded.
+        globs: Place of each that is a glob, and the glob, folded.
+    """
+
+    texts: tuple[str, ...]
+    names: Mapping[str, int]
+    words: Mapping[str, int]
+    globs: tuple[tuple[int, str], ...]
+
+    @classmethod
+    def of(cls, texts: Iterable[str]) -> "Patterns":
+        """Patterns as they are written."""
+        texts = tuple(texts)
+        names: dict[str, int] = {}
+        words: dict[str, int] = {}
+        globs = []
+        for place, text in enumerate(texts):
+            if text.startswith(EXACT):
+                names.setdefault(text[len(EXACT) :], place)
+            elif "*" in text or "?" in text:
+                globs.append((place, _folded(text)))
+            else:
+                words.setdefault(_folded(text), place)
+        return cls(texts, names, words, tuple(globs))
+
+    def first(self, name: str) -> str | None:
+        """The first that fits: a name itself, any word of the name, or a glob the whole name."""
+        folded = _folded(name)
+        n_patterns = len(self.texts)
+        found = [self.words.get(word, n_patterns) for word in (folded, *_words(name))]
+        first = min(self.names.get(name, n_patterns), *found)
+        earlier = (place for place, glob in self.globs if place < first and is_like(folded, glob))
+        first = next(earlier, first)
+        return self.texts[first] if first < n_patterns else None
+
+
+@dataclass(frozen=True, slots=True)
 class Rule:
     """Patterns of one meaning; a name must match one of `patterns` and none of `exceptions`."""
 
     meaning: Meaning
-    patterns: tuple[str, ...]
-    exceptions: tuple[str, ...]
+    patterns: Patterns
+    exceptions: Patterns
     given: bool
 
     def verdict(self, name: str) -> Verdict | None:
         """The first pattern that matches the name, or None."""
-        if any(_matches(exception, name) for exception in self.exceptions):
+        pattern = self.patterns.first(name)
+        if pattern is None or self.exceptions.first(name) is not None:
             return None
-        for pattern in self.patterns:
-            if _matches(pattern, name):
-                return Verdict(self.meaning, pattern, self._certainty(pattern, name))
-        return None
+        return Verdict(self.meaning, pattern, self._certainty(pattern, name))
 
     def _certainty(self, pattern: str, name: str) -> Certainty:
         if self.given:
@@ -220,8 +261,8 @@ def _rules(table: Iterable[tuple[str, list[str]]], *, given: bool) -> tuple[Rule
     return tuple(
         Rule(
             Meaning(meaning),
-            tuple(pattern for pattern in patterns if not pattern.startswith("!")),
-            tuple(pattern[1:] for pattern in patterns if pattern.startswith("!")),
+            Patterns.of(pattern for pattern in patterns if not pattern.startswith("!")),
+            Patterns.of(pattern[1:] for pattern in patterns if pattern.startswith("!")),
             given,
         )
         for meaning, patterns in table
@@ -231,17 +272,6 @@ def _rules(table: Iterable[tuple[str, list[str]]], *, given: bool) -> tuple[Rule
 def _first(rules: tuple[Rule, ...], name: str) -> Verdict:
     verdicts = (rule.verdict(name) for rule in rules)
     return next((verdict for verdict in verdicts if verdict is not None), Verdict())
-
-
-@cache
-def _matches(pattern: str, name: str) -> bool:
-    """Whether a pattern fits: a glob the whole name, a plain word any word, a name itself."""
-    if pattern.startswith(EXACT):
-        return pattern[1:] == name
-    folded_pattern, folded_name = _folded(pattern), _folded(name)
-    if "*" in pattern or "?" in pattern:
-        return is_like(folded_name, folded_pattern)
-    return folded_pattern == folded_name or folded_pattern in _words(name)
 
 
 def is_like(name: str, pattern: str) -> bool:
@@ -273,5 +303,7 @@ def _words(name: str) -> frozenset[str]:
 @cache
 def _folded(text: str) -> str:
     """The text without case and accents; letters such as ł or ø, which are no accents, stay."""
+    if text.isascii():
+        return text.lower()
     decomposed = unicodedata.normalize("NFKD", text.casefold())
     return "".join(c for c in decomposed if not unicodedata.combining(c))
