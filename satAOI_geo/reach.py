@@ -111,7 +111,8 @@ class Band:
         lattice: The rows, as a band of the whole lattice.
         runs: The states, as runs.
         labels: Shape (n_runs,): number of each run's set.
-        lowest: Shape (n_sets,), see `Runs.lowest_states`.
+        lowest: Shape (n_sets,), a number for each set that puts sets in the order of their first
+            states by row, pose and column, the same however a lattice is cut into bands.
         stretches: The nodes of each set: label, row of the whole lattice, first and last column;
             nothing once they are gathered from all bands.
         pages: Of the files that the runs are in, if they are.
@@ -159,9 +160,11 @@ class Band:
         roots(joined.parents)
         run_threads(move, n_directions, share[2])
         labels, n_sets = numbered(joined.parents)
-        label, iy, begin, end = of_runs(runs, labels, n_sets)
+        (label, iy, begin, end), states = of_runs(runs, labels, n_sets)
         stretches = (label, iy + np.int32(lattice.first_row), begin, end)
-        lowest = runs.lowest_states(labels, n_sets, lattice)
+        iy, pose, ix = states.astype(np.int64).T
+        n_poses = n_directions * n_swings
+        lowest = ((lattice.first_row + iy) * n_poses + pose) * lattice.n_columns + ix
         return cls(lattice, runs, labels, lowest, stretches)
 
     def aside(self) -> "Band":
@@ -311,7 +314,7 @@ class _Joined:
         """
         meeting = Meeting.of(self._runs, (move.a1, move.swing), (move.to_a1, move.to_swing))
         rows = meeting.rows_apart(self.parents, move.arm_free)
-        if rows.any():
+        if rows is not None:
             allowed = move.allowed(self._engine, rows)
             with self._one_at_a_time:
                 meeting.join(self.parents, allowed, rows)

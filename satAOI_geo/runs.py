@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from satAOI_geo.intervals import set_bits
 from satAOI_geo.kernels import filled, helper, kernel
-from satAOI_geo.lattice import WORD_BITS, Lattice, Words
+from satAOI_geo.lattice import WORD_BITS, Words
 from satAOI_geo.nodes import Nodes, n_bits
 from satAOI_geo.plan import BoolArray, IntArray
 
@@ -45,14 +45,13 @@ class Runs:
         """The runs of all rows, given part by part, with (n_directions, n_swings, n_rows)."""
         n_directions, n_swings, n_rows = shape
         offsets = np.cumsum([0, *(part.begin.size for part in parts)])
-        of_rows = [
-            part.first[:-1] + offset for part, offset in zip(parts, offsets[:-1], strict=True)
-        ]
-        first = np.concatenate([*of_rows, offsets[-1:]])
+        starts = np.concatenate(
+            [part.first[:-1] + offset for part, offset in zip(parts, offsets[:-1], strict=True)]
+        ).reshape(-1, n_rows)
         # each pose ends where the next one begins
-        places = n_rows * np.arange(n_directions * n_swings)[:, np.newaxis] + np.arange(n_rows + 1)
+        stops = np.append(starts[1:, 0], offsets[-1])
         return cls(
-            first[places].reshape(n_directions, n_swings, n_rows + 1),
+            np.column_stack((starts, stops)).reshape(n_directions, n_swings, n_rows + 1),
             np.concatenate([part.begin for part in parts]),
             np.concatenate([part.end for part in parts]),
         )
@@ -67,16 +66,6 @@ class Runs:
         """How many nodes the runs of the first n_rows rows hold at all poses."""
         before = np.concatenate(([0], np.cumsum(self.end.astype(np.int64) - self.begin + 1)))
         return int((before[self.first[..., n_rows]] - before[self.first[..., 0]]).sum())
-
-    def lowest_states(self, labels: Int32Array, n_sets: int, lattice: Lattice) -> IntArray:
-        """For each set of runs, numbered by `labels`, a number that puts sets in order.
-
-        It is that of the set's first state by row, pose and column, and the same however a lattice
-        is cut into bands.
-        """
-        lowest = np.full(n_sets, np.iinfo(np.int64).max)
-        _lowest_states(self.first, self.begin, labels, lattice.first_row, lattice.n_columns, lowest)
-        return lowest
 
     def holding(self, iy: int, ix: int) -> IntArray:
         """The run that holds each pose at a node, or -1; shape (n_directions, n_swings)."""
@@ -147,22 +136,23 @@ class Meeting:
         found = np.empty((first_a[-1] - first_a[0] + first_b[-1] - first_b[0], 3), dtype=np.int32)
         return found[: _links(allowed, first_a, first_b, self.begin, self.end, found)]
 
-    def rows_apart(self, parents: Int32Array, allowed: Words) -> BoolArray:
-        """The rows in which a move could join two components of the forest `parents`.
+    def rows_apart(self, parents: Int32Array, allowed: Words) -> BoolArray | None:
+        """The rows in which a move could join two components of the forest `parents`, if any.
 
         It may start from no other nodes than the allowed ones.
         """
         rows = np.empty(self.first_a.size - 1, dtype=np.bool_)
-        self._compare(parents, allowed, rows, join=False)
-        return rows
+        return rows if self._compare(parents, allowed, rows, join=False) else None
 
     def join(self, parents: Int32Array, allowed: Words, rows: BoolArray) -> None:
         """Join the runs that a move leads between in some rows, given where it may start from."""
         self._compare(parents, allowed, rows, join=True)
 
-    def _compare(self, parents: Int32Array, allowed: Words, rows: BoolArray, *, join: bool) -> None:
+    def _compare(self, parents: Int32Array, allowed: Words, rows: BoolArray, *, join: bool) -> int:
         """See the kernel."""
-        _compare(parents, allowed, self.first_a, self.first_b, self.begin, self.end, rows, join)
+        return _compare(
+            parents, allowed, self.first_a, self.first_b, self.begin, self.end, rows, join
+        )
 
 
 def rows_of(nodes: Nodes) -> SliceRuns:
@@ -280,7 +270,7 @@ def _links(
 
 
 @kernel(
-    "void(int32[:], const uint64[:, :], const int64[:], const int64[:], const int32[:], "
+    "int64(int32[:], const uint64[:, :], const int64[:], const int64[:], const int32[:], "
     "const int32[:], bool[:], bool)"
 )
 def _compare(
@@ -292,7 +282,7 @@ def _compare(
     end: Int32Array,
     rows: BoolArray,
     join: bool,  # noqa: FBT001  kernels take no keywords
-) -> None:
+) -> int:
     """Find the runs of different roots that an allowed move leads between: join, or tell where.
 
     To tell it takes no lock, though others may be changing the forest: a root that is out of date
@@ -308,7 +298,11 @@ def _compare(
         end: Of all runs.
         rows: Where runs are joined, the rows to do it in; else room for whether a row has any.
         join: Whether to join them.
+
+    Returns:
+        How many such pairs were met: all that were joined, or one in each row that has any.
     """
+    n = 0
     for iy in range(allowed.shape[0]):
         if join and not rows[iy]:
             continue
@@ -324,6 +318,7 @@ def _compare(
                 and _root(parents, a) != _root(parents, b)
                 and 0 <= _next_bit(allowed[iy], ix) <= last_ix
             ):
+                n += 1
                 if not join:
                     rows[iy] = True
                     break
@@ -332,6 +327,7 @@ def _compare(
                 a += 1
             else:
                 b += 1
+    return n
 
 
 @kernel("void(int32[:], const int64[:, :], const int32[:], const int32[:], const int64[:], int64)")
@@ -413,35 +409,6 @@ def _flatten(parents: Int32Array) -> None:
     """Make every run point at its root; roots are the lowest of their component."""
     for run in range(parents.size):
         parents[run] = parents[parents[run]]
-
-
-@kernel("void(const int64[:, :, :], const int32[:], const int32[:], int64, int64, int64[:])")
-def _lowest_states(
-    first: IntArray,
-    begin: Int32Array,
-    labels: Int32Array,
-    first_row: int,
-    n_columns: int,
-    lowest: IntArray,
-) -> None:
-    """Write the numbers of the first states of sets; see `Runs.lowest_states`.
-
-    Args:
-        first: Shape (n_directions, n_swings, n_rows + 1), see `Runs`.
-        begin: First column of each run.
-        labels: Its set.
-        first_row: Of the whole lattice.
-        n_columns: Of the lattice.
-        lowest: The number of each set, at first beyond all numbers.
-    """
-    n_directions, n_swings, n_ends = first.shape
-    for a1 in range(n_directions):
-        for swing in range(n_swings):
-            for iy in range(n_ends - 1):
-                line = ((first_row + iy) * n_directions + a1) * n_swings + swing
-                for run in range(first[a1, swing, iy], first[a1, swing, iy + 1]):
-                    number = line * n_columns + begin[run]
-                    lowest[labels[run]] = min(lowest[labels[run]], number)
 
 
 @kernel("void(const int64[:, :, :], const int32[:], const int32[:], int64, int64, int64[:, :])")

@@ -107,27 +107,32 @@ def merged(
 
 def of_runs(
     runs: Runs, labels: Int32Array, n_sets: int
-) -> tuple[Int32Array, Int32Array, Int32Array, Int32Array]:
-    """The nodes of sets of runs, numbered by `labels`: what `merged` says of these runs.
+) -> tuple[tuple[Int32Array, Int32Array, Int32Array, Int32Array], Int32Array]:
+    """The nodes of sets of runs, numbered by `labels`, and their first states.
 
     There are a hundred runs for each stretch. To sort them takes longer than to paint them, which
     merges them, too; runs come row by row for each pose.
+
+    Returns:
+        What `merged` says of these runs; and row, pose, as a number among all, and column of each
+        set's first state in this order, shape (n_sets, 3).
     """
     first = runs.first.reshape(-1, runs.first.shape[-1])
     n_at_once = min(n_sets, int(np.diff(first, axis=1).sum(axis=0).max(initial=0)))
     n_words = int(runs.end.max(initial=0)) // WORD_BITS + 1
     nodes = np.zeros((n_at_once, n_words), dtype=np.uint64)
     place, met = np.full(n_sets, -1, dtype=np.int32), np.empty(n_at_once, dtype=np.int32)
+    states = np.full((n_sets, 3), -1, dtype=np.int32)
     # of what there is room for only what is written to takes memory
     room = np.empty((runs.begin.size, 4), dtype=np.int32)
-    n = _paint_sets(first, labels, runs.begin, runs.end, nodes, place, met, room)
+    n = _paint_sets(first, labels, runs.begin, runs.end, nodes, place, met, states, room)
     label, row, begin, end = room[np.argsort(room[:n, 0], kind="stable")].T.copy()
-    return label, row, begin, end
+    return (label, row, begin, end), states
 
 
 @kernel(
     "int64(const int64[:, :], const int32[:], const int32[:], const int32[:], uint64[:, :], "
-    "int32[:], int32[:], int32[:, :])"
+    "int32[:], int32[:], int32[:, :], int32[:, :])"
 )
 def _paint_sets(
     first: IntArray,
@@ -137,6 +142,7 @@ def _paint_sets(
     nodes: Words,
     place: Int32Array,
     met: Int32Array,
+    states: Int32Array,
     stretches: Int32Array,
 ) -> int:
     """Write the stretches of sets of runs, by row, set and column; sets as they are met in a row.
@@ -149,6 +155,7 @@ def _paint_sets(
         nodes: No nodes; a row of the lattice for each of the sets in one row.
         place: -1 for each set: which of these it has.
         met: Room for the sets in one row.
+        states: -1; room for row, pose and column of each set's first state.
         stretches: Room for label, row, first and last column of each stretch.
 
     Returns:
@@ -164,6 +171,10 @@ def _paint_sets(
                     place[label] = n_met
                     met[n_met] = label
                     n_met += 1
+                    if states[label, 0] < 0:
+                        states[label, 0] = row
+                        states[label, 1] = pose
+                        states[label, 2] = begin[run]
                 set_bits(nodes[place[label]], begin[run], end[run])
         for k in range(n_met):
             place[met[k]] = -1

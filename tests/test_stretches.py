@@ -34,9 +34,15 @@ def test_the_stretches_of_runs_are_those_of_sorting_and_merging_them(
     runs = drawn_runs(rng, n_columns, n_poses)
     labels = rng.integers(0, n_sets, runs.begin.size).astype(np.int32)
     expected = merged(labels, runs.rows(), runs.begin, runs.end)
-    for found, column in zip(of_runs(runs, labels, n_sets), expected, strict=True):
-        assert found.dtype == column.dtype
-        assert np.array_equal(found, column)
+    found, states = of_runs(runs, labels, n_sets)
+    for each, column in zip(found, expected, strict=True):
+        assert each.dtype == column.dtype
+        assert np.array_equal(each, column)
+    pose = np.searchsorted(runs.first[0, :, -1], np.arange(labels.size), side="right")
+    of_all = list(zip(runs.rows().tolist(), pose.tolist(), runs.begin.tolist(), strict=True))
+    for label in np.unique(labels).tolist():
+        first = min(of_all[run] for run in np.flatnonzero(labels == label).tolist())
+        assert tuple(states[label].tolist()) == first
 
 
 def test_runs_that_meet_or_overlap_are_one_stretch_in_their_set_only() -> None:
@@ -47,17 +53,18 @@ def test_runs_that_meet_or_overlap_are_one_stretch_in_their_set_only() -> None:
     poses = [pose(10, 20), pose(21, 63), pose(65, 70), pose(15, 30)]
     runs = Runs.joined(poses, (1, 4, 1))
     labels = np.array([1, 1, 1, 0], dtype=np.int32)
-    stretches = np.column_stack(of_runs(runs, labels, 2))
+    stretches = np.column_stack(of_runs(runs, labels, 2)[0])
     assert stretches.tolist() == [[0, 0, 15, 30], [1, 0, 10, 63], [1, 0, 65, 70]]
 
 
 @pytest.mark.parametrize("n_poses", [1, 3])
 def test_no_runs_have_no_stretches(n_poses: int) -> None:
     none = rows_of(Nodes.of(np.zeros((N_ROWS, 70), dtype=np.bool_)))
-    found = of_runs(
+    found, states = of_runs(
         Runs.joined([none] * n_poses, (1, n_poses, N_ROWS)), np.empty(0, dtype=np.int32), 0
     )
     assert [column.size for column in found] == [0, 0, 0, 0]
+    assert states.shape == (0, 3)
 
 
 def stretches_of(sets: list[BoolArray]) -> Stretches:
