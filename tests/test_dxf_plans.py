@@ -1,13 +1,15 @@
 """Several plans in one drawing, and what lies beside, under or behind them."""
 
+import math
 from itertools import pairwise
 from pathlib import Path
 
 import ezdxf
 import pytest
+from ezdxf import transform
 from ezdxf.document import Drawing
 from ezdxf.layouts import Modelspace
-from ezdxf.math import Vec2
+from ezdxf.math import Matrix44, Vec2
 
 from satAOI_geo.errors import DrawingError, InputError
 from tests.drawings import MM, codes, drawing, plan_of, rectangle, standing
@@ -266,3 +268,97 @@ def test_rectangle_that_may_be_a_wall_is_no_frame(what: str, tmp_path: Path) -> 
     plan = plan_of(document, tmp_path)
     assert "frame" not in codes(plan)
     assert plan.floor.area >= 21_000 * 15_000
+
+
+def in_a_frame(document: Drawing, *, margin_mm: float, around: str) -> None:
+    """Draw a rectangle, or two, around a flat, perhaps with a title block in its corner."""
+    space = document.modelspace()
+    left, bottom, right, top = -2200, -2000, 8200, 6400
+    rectangle_of_lines(space, (left, bottom, right, top))
+    if margin_mm:
+        outer = (left - margin_mm, bottom - margin_mm, right + margin_mm, top + margin_mm)
+        rectangle_of_lines(space, outer)
+    if around == "frame with title block":
+        space.add_line((4000, bottom), (4000, bottom + 1000), dxfattribs={"layer": "0"})
+        space.add_line((4000, bottom + 1000), (right, bottom + 1000), dxfattribs={"layer": "0"})
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 30.0])
+@pytest.mark.parametrize("margin_mm", [0.0, 300.0, 500.0])
+@pytest.mark.parametrize("around", ["frame", "frame with title block"])
+def test_frame_around_walls_that_enclose_rooms_needs_no_door_to_be_left_out(
+    around: str, margin_mm: float, turn_deg: float, tmp_path: Path
+) -> None:
+    document = flat_on_layer_0(with_door=False)
+    in_a_frame(document, margin_mm=margin_mm, around=around)
+    transform.inplace(document.modelspace(), Matrix44.z_rotate(math.radians(turn_deg)))
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == pytest.approx(6400 * 4400)
+    (said,) = [finding for finding in plan.findings if finding.code == "frame"]
+    whole_m2 = (10.4 + 2 * margin_mm / 1000) * (8.4 + 2 * margin_mm / 1000)
+    assert f"encloses {whole_m2:.2f} m², the walls in it 28.16 m²" in said.message
+    assert said.layer == "0"
+    assert said.at_mm is not None
+
+
+@pytest.mark.parametrize(
+    ("what", "sign"),
+    [
+        ("a hall with a core", "spans only 30% of it"),
+        ("columns", "3 closed things stand between it and the walls"),
+        ("walls of single lines", "do not run side by side"),
+        ("a second face", "as far away, 200 mm, as the faces of walls"),
+    ],
+)
+def test_rectangle_around_rooms_that_may_be_a_wall_is_one_and_both_areas_are_said(
+    what: str, sign: str, tmp_path: Path
+) -> None:
+    document = flat_on_layer_0(with_door=False)
+    space = document.modelspace()
+    if what == "walls of single lines":
+        space.delete_all_entities()
+        corners = [(-200, 0), (6200, 0), (6200, 4400), (1400, 4400), (1400, 4000), (-200, 4000)]
+        for start, end in pairwise([*corners, corners[0]]):
+            space.add_line(start, end, dxfattribs={"layer": "0"})
+    if what == "a hall with a core":
+        rectangle_of_lines(space, (-5000, -6000, 16_000, 9000))
+    else:
+        margin_mm = 200.0 if what == "a second face" else 0.0
+        in_a_frame(document, margin_mm=margin_mm, around="wall")
+    if what == "columns":
+        for x in (-1000, 3000, 7000):
+            rectangle(space, x, 5200, x + 300, 5500, layer="0")
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area >= 10_400 * 8400
+    (said,) = [finding for finding in plan.findings if finding.code == "frame-or-wall"]
+    assert sign in said.message
+    enclosed_m2 = 27.52 if what == "walls of single lines" else 28.16
+    areas = f"it encloses {plan.floor.area / 1e6:.2f} m², the walls in it {enclosed_m2} m²"
+    assert areas in said.message
+    assert "--region" in said.remedy
+
+
+@pytest.mark.parametrize("known", ["layer", "floor"])
+def test_rectangle_is_no_frame_where_its_layer_or_a_floor_says_so(
+    known: str, tmp_path: Path
+) -> None:
+    document = flat_on_layer_0(with_door=False)
+    in_a_frame(document, margin_mm=0, around="wall")
+    if known == "layer":
+        for entity in document.modelspace():
+            entity.dxf.layer = "WALL"
+    else:
+        rectangle(document.modelspace(), -2200, -2000, 8200, 6400, layer="FLOOR")
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == 10_400 * 8400
+    assert "frame" not in codes(plan)
+
+
+def test_walls_told_by_their_look_may_have_a_frame_around_them(tmp_path: Path) -> None:
+    document = flat_on_layer_0(with_door=False)
+    in_a_frame(document, margin_mm=0, around="frame")
+    # a column in the room tells that there must be walls
+    rectangle(document.modelspace(), 3000, 2000, 3300, 2300, layer="COLUMN")
+    plan = plan_of(document, tmp_path)
+    assert {"walls-by-look", "frame"} <= set(codes(plan))
+    assert plan.floor.area == 6400 * 4400

@@ -8,18 +8,26 @@ three. With the frame goes what is joined to it, the title block.
     │  │ building │ ┌──────┤
     │  └───/ ─────┘ │ title│
     └───────────────┴──────┘
+
+Where doors swing in it, the building is told by them. Where none does, the rectangle may be the
+wall of a hall with a core in it: that is told by how much of it the building fills and by what
+stands between the two, and either reading is said with both areas.
 """
 
-from collections.abc import Sequence
-from dataclasses import replace
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Final
 
 import numpy as np
 import shapely
 from shapely.geometry import box
+from shapely.geometry.base import BaseGeometry
 
 from satAOI_adapters.dxf_read.doors import FACES_MM
+from satAOI_adapters.dxf_read.enclosure import enclosed
+from satAOI_adapters.dxf_read.estimate import beside
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.groups import linked
 from satAOI_adapters.dxf_read.linework import WALL_MM
@@ -28,8 +36,8 @@ from satAOI_adapters.dxf_read.meaning import Seen
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.plans import n_swings, rough_lines
 from satAOI_adapters.dxf_read.shapes import GeometryArray
-from satAOI_adapters.layers import KINDS, Meaning, Verdict
-from satAOI_geo.plan import BoolArray, Finding
+from satAOI_adapters.layers import KINDS, Certainty, Meaning, Verdict
+from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray
 
 IN_A_PLAN: Final = frozenset({*KINDS, Meaning.FLOOR, Meaning.DOOR})
 """Meanings of what a plan consists of; its frame is taken for one of these."""
@@ -43,6 +51,91 @@ WHOLE: Final = 0.99
 EVEN_MM: Final = 10.0
 """Rectangles a usual wall's thickness apart, on all sides alike to this, are its faces."""
 
+FILLED: Final = 0.4
+"""A plan spans this share of its sheet: one that spans less would be drawn at the next scale."""
+
+FRAME: Final = "frame"
+"""What findings call a frame that is left out."""
+
+MARKS: Final = 2
+"""So many closed things beside a plan may be marks, as a north arrow; columns are more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """What is drawn of plans, with rectangles around it.
+
+    Attributes:
+        drawn: Entities, with what they draw in drawing units.
+        mm_per_unit: Millimetres in one.
+        lines: The same roughly, in millimetres, turned so that the outermost rectangle is upright.
+        frames: Left, bottom, right, top of the rectangles, the outermost first.
+        is_frame: Which lines draw them.
+        group: The group of lines, joined to each other, that each line is in.
+    """
+
+    drawn: Sequence[tuple[Seen, Feature]]
+    mm_per_unit: float
+    lines: GeometryArray
+    frames: Sequence[tuple[float, ...]]
+    is_frame: BoolArray
+    group: IntArray
+
+    @classmethod
+    def of(cls, drawn: Sequence[tuple[Seen, Feature]], mm_per_unit: float) -> "Sheet":
+        """The sheet that what is drawn of plans makes up."""
+        lines = _upright(rough_lines([feature for _, feature in drawn]), mm_per_unit)
+        frames, is_frame = _frames(lines)
+        if not frames:
+            return cls(drawn, mm_per_unit, lines, frames, is_frame, np.arange(len(lines)))
+        tree = shapely.STRtree(lines)
+        pairs = tree.query(lines, predicate="dwithin", distance=CLOSE_GAPS_MM).T
+        return cls(drawn, mm_per_unit, lines, frames, is_frame, linked(pairs, len(lines)))
+
+    @property
+    def is_out(self) -> BoolArray:
+        """Which lines go with the frames: what is joined to one, directly or through others."""
+        return np.isin(self.group, self.group[self.is_frame])
+
+    @property
+    def is_apart(self) -> bool:
+        """Whether there are frames, something in them, and no wall near one."""
+        rest = self.lines[~self.is_out]
+        if not self.frames or not rest.size:
+            return False
+        frames = shapely.union_all(self.lines[self.is_frame])
+        return bool((shapely.distance(frames, rest) > WALL_MM).all())
+
+    @property
+    def rest(self) -> list[Feature]:
+        """What is not joined to a frame, in drawing units."""
+        return [self.drawn[k][1] for k in np.flatnonzero(~self.is_out).tolist()]
+
+    @property
+    def left_out(self) -> list[Seen]:
+        """The entities that are, or are joined to, a frame."""
+        left_out = {
+            id(self.drawn[k][0]): self.drawn[k][0] for k in np.flatnonzero(self.is_out).tolist()
+        }
+        return list(left_out.values())
+
+    @property
+    def outermost(self) -> tuple[Seen, Feature]:
+        """The first of what draws the frames."""
+        return self.drawn[int(np.flatnonzero(self.is_frame)[0])]
+
+    def faces_mm(self, widest_mm: float) -> float:
+        """How far apart two of the rectangles are that may be the faces of a wall; 0 if none are.
+
+        Args:
+            widest_mm: No wall is thicker.
+        """
+        for outer, inner in pairwise(self.frames):
+            apart_mm = np.abs(np.subtract(outer, inner))
+            if apart_mm.max() <= widest_mm and np.ptp(apart_mm) <= EVEN_MM:
+                return float(apart_mm.max())
+        return 0.0
+
 
 def without_frames(
     near: Sequence[tuple[Seen, Feature]], mm_per_unit: float
@@ -53,36 +146,61 @@ def without_frames(
         near: Entities, with what they draw in drawing units.
         mm_per_unit: Millimetres in a drawing unit.
     """
-    of_plan = [k for k, (entity, _) in enumerate(near) if entity.verdict.meaning in IN_A_PLAN]
-    drawn = [near[k][1] for k in of_plan]
-    if not any(map(n_swings, drawn)):
+    drawn = [pair for pair in near if pair[0].verdict.meaning in IN_A_PLAN]
+    sheet = Sheet.of(drawn, mm_per_unit) if drawn else None
+    if sheet is None or not sheet.is_apart:
         return list(near), ()
-    start = shapely.get_coordinates(rough_lines(drawn[:1]))[0]
-    # near the origin, where doubles have digits to spare
-    lines = shapely.transform(rough_lines(drawn), lambda xy: (xy - start) * mm_per_unit)
-    is_frame = _frames(lines)
-    if not is_frame.any():
-        return list(near), ()
-    is_out = _joined_to(is_frame, lines)
-    rest = [feature for feature, out in zip(drawn, is_out, strict=True) if not out]
-    is_apart = shapely.distance(shapely.union_all(lines[is_frame]), lines[~is_out]) > WALL_MM
-    is_building = any(map(n_swings, rest)) and look_like_walls(rest, mm_per_unit)
-    if not (is_building and is_apart.all()):
-        return list(near), ()
-    frames = [near[k][0] for k, is_one in zip(of_plan, is_frame, strict=True) if is_one]
-    left_out = {id(near[k][0]) for k, out in zip(of_plan, is_out, strict=True) if out}
+    has_doors = any(n_swings(feature) for _, feature in drawn)
+    finding = (_by_doors if has_doors else _by_rooms)(sheet)
+    if finding is None or finding.code != FRAME:
+        return list(near), () if finding is None else (finding,)
+    left_out = {id(entity) for entity in sheet.left_out}
     ignored = Verdict(Meaning.IGNORE)
     return (
         [(replace(e, verdict=ignored) if id(e) in left_out else e, f) for e, f in near],
-        (_finding(frames[0], len(left_out)),),
+        (finding,),
     )
 
 
-def _frames(lines: GeometryArray) -> BoolArray:
-    """Which lines draw rectangles around all others; none if these are the faces of walls."""
+def _by_doors(sheet: Sheet) -> Finding | None:
+    """What is to be said where doors swing: a frame, if they are those of the building in it."""
+    rest = sheet.rest
+    is_building = any(map(n_swings, rest)) and look_like_walls(rest, sheet.mm_per_unit)
+    return _as_frame(sheet, "") if is_building and not sheet.faces_mm(FACES_MM) else None
+
+
+def _by_rooms(sheet: Sheet) -> Finding | None:
+    """What is to be said where no door swings, if walls in the rectangle enclose rooms."""
+    if not _may_be_guessed(sheet):
+        return None
+    rooms = enclosed(list(sheet.lines[~sheet.is_out])).region
+    if rooms.is_empty:
+        return None
+    areas = (
+        f"; no door tells what it is: it encloses {box(*sheet.frames[0]).area / 1e6:.2f} m², the "
+        f"walls in it {rooms.area / 1e6:.2f} m²"
+    )
+    signs = list(_signs_of_a_wall(sheet, rooms))
+    return _as_wall(sheet, areas, signs) if signs else _as_frame(sheet, areas)
+
+
+def _upright(drawn: GeometryArray, mm_per_unit: float) -> GeometryArray:
+    """Lines in millimetres, turned so that the least rectangle around them all is upright."""
+    # near the origin, where doubles have digits to spare
+    start = shapely.get_coordinates(drawn[0])[0]
+    lines = shapely.transform(drawn, lambda xy: (xy - start) * mm_per_unit)
+    around = shapely.oriented_envelope(shapely.geometrycollections(lines))
+    (x0_mm, y0_mm), (x1_mm, y1_mm) = shapely.get_coordinates(around)[:2]
+    turn_rad = math.atan2(y1_mm - y0_mm, x1_mm - x0_mm)
+    cos, sin = math.cos(turn_rad), math.sin(turn_rad)
+    return np.asarray(shapely.transform(lines, lambda xy: xy @ np.array(((cos, -sin), (sin, cos)))))
+
+
+def _frames(lines: GeometryArray) -> tuple[list[tuple[float, ...]], BoolArray]:
+    """The rectangles around all else, the outermost first, and which lines draw them."""
     is_frame = np.zeros(len(lines), dtype=bool)
-    around: list[tuple[float, ...]] = []
-    while len(around) < MOST_FRAMES and not is_frame.all():
+    frames: list[tuple[float, ...]] = []
+    while len(frames) < MOST_FRAMES and not is_frame.all():
         rim = box(*shapely.total_bounds(lines[~is_frame])).exterior
         reach = rim.buffer(CLOSE_GAPS_MM)
         shapely.prepare(reach)
@@ -90,29 +208,90 @@ def _frames(lines: GeometryArray) -> BoolArray:
         if shapely.union_all(lines[on_rim]).length < WHOLE * rim.length:
             break
         is_frame |= on_rim
-        around.append(rim.bounds)
-    for outer, inner in pairwise(around):
-        apart_mm = np.abs(np.subtract(outer, inner))
-        if apart_mm.max() <= FACES_MM and np.ptp(apart_mm) <= EVEN_MM:
-            return np.zeros(len(lines), dtype=bool)
-    return is_frame
+        frames.append(rim.bounds)
+    return frames, is_frame
 
 
-def _joined_to(is_frame: BoolArray, lines: GeometryArray) -> BoolArray:
-    """Which lines are frames or joined to one, directly or through others."""
-    one, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=CLOSE_GAPS_MM)
-    group = linked(np.column_stack((one, other)), len(lines))
-    return np.isin(group, group[is_frame])
+def _may_be_guessed(sheet: Sheet) -> bool:
+    """Whether only guesses say that the rectangle is a wall, and the floor hangs on it."""
+    verdicts = [entity.verdict for entity, _ in sheet.drawn]
+    is_guess = all(
+        verdicts[k].meaning is Meaning.WALL and verdicts[k].certainty is Certainty.UNKNOWN
+        for k in np.flatnonzero(sheet.is_frame)
+    )
+    return is_guess and all(verdict.meaning is not Meaning.FLOOR for verdict in verdicts)
 
 
-def _finding(frame: Seen, count: int) -> Finding:
-    layer = frame.placed.layer
-    return Finding(
-        "frame",
-        f"a rectangle on layer '{layer}' lies around everything, and no wall comes near it: it is "
-        "taken as the frame of the sheet and left out with what is joined to it, "
-        f"{count} entities together",
+def _signs_of_a_wall(sheet: Sheet, rooms: BaseGeometry) -> Iterator[str]:
+    """What speaks for a wall rather than a frame where no door tells the building in it.
+
+    Args:
+        sheet: The sheet.
+        rooms: What the walls in the rectangle enclose.
+    """
+    if not look_like_walls(sheet.rest, sheet.mm_per_unit):
+        yield "the lines in it do not run side by side as the faces of walls do"
+    faces_mm = sheet.faces_mm(WALL_MM)
+    _, thicknesses = beside(sheet.rest)
+    is_as_thick = np.abs(thicknesses * sheet.mm_per_unit - faces_mm) <= EVEN_MM
+    if faces_mm and is_as_thick.any():
+        yield f"a second one in it is as far away, {faces_mm:.0f} mm, as the faces of walls there"
+    spans_mm, whole_mm = _spans_mm(rooms.bounds), _spans_mm(sheet.frames[-1])
+    # two rectangles as far apart as faces of walls are frames only if all but an aisle is filled
+    share = (np.min if faces_mm else np.max)(spans_mm / whole_mm)
+    if share < FILLED:
+        yield f"what the walls in it enclose spans only {share:.0%} of it"
+    count = _n_things(sheet, rooms)
+    if count > MARKS:
+        yield f"{count} closed things stand between it and the walls"
+
+
+def _spans_mm(bounds_mm: Sequence[float]) -> FloatArray:
+    left, bottom, right, top = bounds_mm
+    return np.array((right - left, top - bottom))
+
+
+def _n_things(sheet: Sheet, rooms: BaseGeometry) -> int:
+    """How many things, drawn by lines that close, stand neither in rooms nor at them."""
+    shapely.prepare(rooms)
+    of_rooms = sheet.group[shapely.dwithin(rooms, sheet.lines, WALL_MM)]
+    is_beside = ~sheet.is_out & ~np.isin(sheet.group, of_rooms)
+    lines, group = sheet.lines[is_beside], sheet.group[is_beside]
+    return sum(
+        shapely.polygonize([shapely.union_all(lines[group == k])]).area > 0
+        for k in np.unique(group)
+    )
+
+
+def _as_frame(sheet: Sheet, areas: str) -> Finding:
+    return _finding(
+        FRAME,
+        "is taken as the frame of the sheet and left out with what is joined to it, "
+        f"{len(sheet.left_out)} entities together{areas}",
         "draw the floor's outline on a layer FLOOR if it is a wall",
+        sheet,
+    )
+
+
+def _as_wall(sheet: Sheet, areas: str, signs: Sequence[str]) -> Finding:
+    return _finding(
+        "frame-or-wall",
+        f"is taken for a wall, not for the frame of the sheet, since {' and '.join(signs)}{areas}",
+        "give the part to read with --region, or draw the frame on a layer FRAME, if it is one",
+        sheet,
+    )
+
+
+def _finding(code: str, said: str, remedy: str, sheet: Sheet) -> Finding:
+    entity, feature = sheet.outermost
+    layer = entity.placed.layer
+    x, y = feature.paths[0].start
+    return Finding(
+        code,
+        f"a rectangle on layer '{layer}' lies around everything, and no wall comes near it: it "
+        f"{said}",
+        remedy,
         layer=layer,
-        handle=frame.placed.handle,
+        handle=entity.placed.handle,
+        at_mm=(x * sheet.mm_per_unit, y * sheet.mm_per_unit),
     )

@@ -275,9 +275,13 @@ def _looked_at(
     """What is drawn, with the meanings that only its look tells, once the unit is known."""
     if isinstance(known, UnitError):
         return near, ()
-    near, of_frames = without_frames(near, known.unit.mm)
-    near, by_look = (with_lookalikes if is_named else with_tiles)(near, known.unit.mm)
-    return near, (*of_frames, *by_look)
+    # what looks like walls may have a frame around it, which no tile has
+    stages = (with_lookalikes, without_frames) if is_named else (without_frames, with_tiles)
+    findings: list[Finding] = []
+    for stage in stages:
+        near, said = stage(near, known.unit.mm)
+        findings.extend(said)
+    return near, tuple(findings)
 
 
 def _door_blocks(seen: Iterable[Seen], table: LayerTable) -> frozenset[str]:
