@@ -29,11 +29,12 @@ from satAOI_adapters.dxf_read.floor import Floor, floor_of
 from satAOI_adapters.dxf_read.floor_layers import outer_edges
 from satAOI_adapters.dxf_read.glazing import between_rooms, with_marked_doors
 from satAOI_adapters.dxf_read.marks import marks_of
+from satAOI_adapters.dxf_read.nameless import with_nameless_walls
 from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
 from satAOI_adapters.dxf_read.openings import Still, shut, with_openings
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
-from satAOI_adapters.dxf_read.plans import Drawn, chosen, clusters, within
+from satAOI_adapters.dxf_read.plans import Drawn, chosen, clusters, rough_lines, within
 from satAOI_adapters.dxf_read.shapes import middle_line
 from satAOI_adapters.dxf_read.survey import Survey, survey
 from satAOI_adapters.dxf_read.swings import parted, swings
@@ -41,6 +42,7 @@ from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_adapters.dxf_read.thresholds import without_thresholds
 from satAOI_adapters.dxf_read.trenches import trenches
 from satAOI_adapters.dxf_read.unclassified import LEFT_OUT, ROOM, unclassified
+from satAOI_adapters.dxf_read.units import hold_size
 from satAOI_adapters.dxf_read.windows import window_findings, windows
 from satAOI_adapters.layers import KINDS, Meaning
 from satAOI_geo.errors import InputError
@@ -89,8 +91,9 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
     start_mm, start_findings = _start(drawing, frame, options)
     everything = drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
     chosen_part, choice = _chosen(everything, options, start_mm, frame)
+    hold_size(drawing.unit, _size_mm(chosen_part), drawing.path.name)
     marks = marks_of(drawing.expansion.placed, frame)
-    drawn, of_marks = with_marked_doors(_with_doors(chosen_part), marks, frame)
+    named, of_marks = with_marked_doors(_with_doors(chosen_part), marks, frame)
     terms = Terms(
         frame,
         options.close_gaps_mm,
@@ -98,6 +101,7 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
         _region_mm(options, frame),
         drawing.given_layers(Meaning.FLOOR),
     )
+    drawn, of_nameless = with_nameless_walls(named, drawing.dashed, terms)
     standing = _standing(drawn, terms, drawing)
     sills = spans(drawn[Meaning.DOOR], [o.region() for o in standing.obstacles])
     floor = floor_of(drawn[Meaning.FLOOR], standing.obstacles, sills, terms)
@@ -111,6 +115,7 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
         findings=(
             *drawing.findings,
             *choice,
+            *of_nameless,
             *standing.findings,
             *of_marks,
             *between_rooms(drawn, floor.region, standing.obstacles, frame),
@@ -140,6 +145,15 @@ def _chosen(
         return drawn, findings
     kept, n_left_out = within(drawn, cluster.hull)
     return kept, (*findings, *_left_out(n_left_out, "the plan"))
+
+
+def _size_mm(drawn: Drawn) -> tuple[float, float] | None:
+    """Width and height of what layers name as standing in a plan, or as its floor."""
+    named = [feature for meaning in (*KINDS, Meaning.FLOOR) for feature in drawn[meaning]]
+    if not named:
+        return None
+    left, bottom, right, top = shapely.total_bounds(rough_lines(named))
+    return float(right - left), float(top - bottom)
 
 
 def _region_mm(options: ReadOptions, frame: Frame) -> tuple[float, float, float, float] | None:
