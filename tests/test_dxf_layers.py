@@ -119,6 +119,239 @@ def test_office_names_are_understood(name: str, meaning: Meaning | None) -> None
     assert layer_table().of_layer(name).meaning is meaning
 
 
+VOCABULARY = {
+    "English": {
+        Meaning.WALL: "ExtWalls; STRUCT; WALLLINES; Plasterboard; Partitioning; Structural wall",
+        Meaning.WINDOW: "A-WIN; Storefront; Curtain wall",
+        Meaning.DOOR: "Doorway; doors-internal",
+        Meaning.COLUMN: "Stanchions; STEEL COLUMN",
+        Meaning.HOLE: "MANHOLES; Floor drain; Gully; Catch basin; HVAC SHAFT; ELEC PIT",
+        Meaning.EQUIPMENT: "FOUNDATION; PUMP FOUNDATION; STEPS; Staircase",
+        Meaning.IGNORE: "FF&E; smoke detectors; cable tray; GRIDLINES; Callouts; skylight",
+    },
+    "German": {
+        Meaning.WALL: "AW; KS-Mauerwerk; Leichtbauwand neu; Wandkonstruktion; Poche",
+        Meaning.DOOR: "Innentüren; Aussentueren; Schiebetür",
+        Meaning.HOLE: "Aufzugsschacht; Elektroschacht; Kabelkanal Elektro",
+        Meaning.EQUIPMENT: "Fundamente; Behälter; Treppenhaus",
+        Meaning.IGNORE: "Beleuchtung; Vermaßung; Steckdosen; Heizkörper; Raumnamen; Dachüberstand",
+        Meaning.ROOM: "Nutzflächen",
+    },
+    "French": {
+        Meaning.WALL: "PLACO; Doublage; CLOISONNEMENT; Parpaings; Murs côté rue",
+        Meaning.WINDOW: "Baies; baie vitrée; Châssis",
+        Meaning.HOLE: "Réservations plomberie; Avaloir",
+        Meaning.EQUIPMENT: "Fondations; Massifs; Cuves; Garde-corps",
+        Meaning.IGNORE: "Meubles; Éclairage; Plomberie; CHAUFFAGE; Cote; Étiquettes",
+    },
+    "Italian": {
+        Meaning.WALL: "tramezzature; TRAMEZZE; SETTI; Cartongesso",
+        Meaning.HOLE: "Vuoti; Cavedio impianti; Fori impianti",
+        Meaning.EQUIPMENT: "Scale; Serbatoi; Ringhiera",
+        Meaning.IGNORE: "ARREDAMENTO; IMPIANTI; Illuminazione; CAMPITURE; Quotature",
+        Meaning.ROOM: "Superfici; Ambienti",
+    },
+    "Spanish": {
+        Meaning.WALL: "Pladur; Muro medianera; Tablaroca",
+        Meaning.WINDOW: "VENTANERÍA; Cancelería; VANOS",
+        Meaning.COLUMN: "EST_CASTILLOS",
+        Meaning.HOLE: "Registros; Hueco instalaciones",
+        Meaning.EQUIPMENT: "BASES; Tanques; Cimentación",
+        Meaning.IGNORE: "ARQ_AMUEBLADO; Iluminación; ACOTADO; ALERO; Etiquetas",
+        Meaning.ROOM: "Superficies; Habitaciones",
+    },
+    "Catalan": {
+        Meaning.WALL: "Parets; Envans",
+        Meaning.WINDOW: "Finestres; Fusteria",
+        Meaning.HOLE: "Forats",
+        Meaning.EQUIPMENT: "Escales; Ascensors",
+        Meaning.IGNORE: "Mobles; Enllumenat",
+    },
+    "Portuguese": {
+        Meaning.WALL: "ALVENARIAS; A-PAR; Tijolos; Divisórias móveis",
+        Meaning.WINDOW: "Esquadrias; Caixilharia; Vãos",
+        Meaning.COLUMN: "Colunas",
+        Meaning.HOLE: "Vazios; Shaft elétrico; Caixa de esgoto",
+        Meaning.EQUIPMENT: "Tanque; FUNDAÇÃO; Degraus",
+        Meaning.IGNORE: "MÓVEIS; mobília; louça; Iluminação; Projeção; TELHADO",
+    },
+    "Polish": {
+        Meaning.WALL: "konstrukcja; działowe; ŚCIANY",
+        Meaning.WINDOW: "STOLARKA OKIENNA; stolarka; Stolarka okienno-drzwiowa",
+        Meaning.DOOR: "STOLARKA DRZWIOWA",
+        Meaning.COLUMN: "Słupy; SLUPY",
+        Meaning.HOLE: "Szacht wentylacja; Studnie",
+        Meaning.EQUIPMENT: "klatka schodowa; Zbiornik; FUNDAMENTY MASZYN; Dźwig",
+        Meaning.IGNORE: "WYPOSAŻENIE; Oświetlenie; gniazda; elektryka; KRESKI; teksty",
+        Meaning.ROOM: "Powierzchnie",
+    },
+    "Czech and Slovak": {
+        Meaning.WALL: "priečky; Příčka; zdivo",
+        Meaning.WINDOW: "okenní výplně",
+        Meaning.HOLE: "šachty; Otvory; Vpusti",
+        Meaning.EQUIPMENT: "schodiště; schodisko; výtah; Základy; Zábradlí",
+        Meaning.IGNORE: "Zařizovací předměty; Osvětlení; kóty; popisy; Šrafura",
+        Meaning.ROOM: "místnosti",
+    },
+    "Hungarian": {
+        Meaning.WALL: "tartófalak; Falazat",
+        Meaning.WINDOW: "Ablakok; nyílászárók",
+        Meaning.COLUMN: "pillérek",
+        Meaning.HOLE: "akna",
+        Meaning.EQUIPMENT: "lépcső; Tartály; Gépek",
+        Meaning.IGNORE: "Bútorozás; Világítás; méretek; szöveg; tengelyek",
+        Meaning.ROOM: "helyiség",
+    },
+    "Romanian": {
+        Meaning.WALL: "zidărie; Perete; Compartimentări",
+        Meaning.WINDOW: "ferestre; Tâmplărie",
+        Meaning.DOOR: "uși",
+        Meaning.EQUIPMENT: "scări; Fundații; Utilaje",
+        Meaning.IGNORE: "Iluminat; Prize; Hașură",
+    },
+    "Croatian, Serbian, Slovene": {
+        Meaning.WALL: "pregradni zid; Stene; Zidovi",
+        Meaning.WINDOW: "prozori; Stolarija",
+        Meaning.DOOR: "Vrata",
+        Meaning.COLUMN: "Stubovi; Stebri",
+        Meaning.HOLE: "Šahtovi",
+        Meaning.EQUIPMENT: "stepenice; stubište; Dizalo; Temelji; Stroj",
+        Meaning.IGNORE: "namještaj; Rasvjeta; kote; natpisi; osi",
+        Meaning.ROOM: "Prostorije",
+    },
+    "Turkish": {
+        Meaning.WALL: "BÖLME; TUĞLA; İç Duvarı; duvarları",
+        Meaning.WINDOW: "DOĞRAMA; PENCERELER",
+        Meaning.DOOR: "Kapı; İç kapı; KAPI; Kapılar; KAPISI",
+        Meaning.HOLE: "ŞAFT; Galeri boşluğu; Tesisat şaftı",
+        Meaning.EQUIPMENT: "MERDİVEN; merdiven; MERDIVENLER; Asansör; MAKİNE; Makine temeli",
+        Meaning.IGNORE: "VİTRİFİYE; AYDINLATMA; tesisat; Yazı; YAZI; TARAMA; Isıtma",
+        Meaning.ROOM: "Mahal",
+    },
+    "Russian and Ukrainian": {
+        Meaning.WALL: "Кладка; Ограждающие конструкции; Контур стен; Цегла",
+        Meaning.WINDOW: "Витражи; Оконные блоки; Вікна; Оконные проёмы",
+        Meaning.DOOR: "Проемы; Дверные проёмы",
+        Meaning.HOLE: "Вентшахты; Колодцы; Проемы в перекрытии",
+        Meaning.EQUIPMENT: "Лестничная клетка; Резервуары; Постамент; Сходи",
+        Meaning.IGNORE: "Сантех оборудование; Освещение; Отопление; Розетки; Тексты; Карниз",
+        Meaning.ROOM: "Площади",
+    },
+    "Greek": {
+        Meaning.WALL: "Τοίχος",
+        Meaning.WINDOW: "ΠΑΡΑΘΥΡΑ",
+        Meaning.DOOR: "Πόρτες",
+        Meaning.COLUMN: "Κολώνες",
+        Meaning.EQUIPMENT: "Σκάλες",
+        Meaning.IGNORE: "Έπιπλα; Κείμενα",
+    },
+    "Scandinavian": {
+        Meaning.WALL: "Skillevægge; Skillevaegge; Murværk; Mellanväggar; Lettvegger; YV",
+        Meaning.DOOR: "Innerdörrar; Ytterdør; Døre",
+        Meaning.COLUMN: "Søjler; Soejler; Pelar",
+        Meaning.HOLE: "Golvbrunn; Gulvafløb; Sluk; Sjakt",
+        Meaning.EQUIPMENT: "Trapper; Trappa; Hiss; Maskiner; Fundament; Räcke",
+        Meaning.IGNORE: "Inredning; Belysning; MÅL; Måttsättning; Tekster; MODULLINIER; VVS",
+        Meaning.ROOM: "Rum; Utrymmen",
+    },
+    "Finnish": {
+        Meaning.WALL: "Muuraus; Väliseinät",
+        Meaning.WINDOW: "Ikkunat",
+        Meaning.COLUMN: "Pylväät",
+        Meaning.HOLE: "Kuilut; Lattiakaivot",
+        Meaning.EQUIPMENT: "portaat; hissi; Säiliö; Kaiteet",
+        Meaning.IGNORE: "Kalusteet; Valaistus; Mitat; tekstit; Sähkö",
+        Meaning.ROOM: "Huoneet",
+    },
+    "Dutch": {
+        Meaning.WALL: "Metselwerk",
+        Meaning.WINDOW: "kozijnen; Deuren en ramen",
+        Meaning.DOOR: "binnendeuren",
+        Meaning.HOLE: "Vloerputten; Schachten; Vides",
+        Meaning.EQUIPMENT: "Trappenhuis; Liften; Fundering; Leuningen",
+        Meaning.IGNORE: "inrichting; meubels; Sanitair; Verlichting; Maatlijnen; Teksten",
+        Meaning.ROOM: "Ruimten",
+    },
+    "Chinese": {
+        Meaning.WALL: "砌体",
+        Meaning.HOLE: "电气管井; 雨水口; 井盖; 消防水池",
+        Meaning.EQUIPMENT: "储罐; 水箱; 机械",
+        Meaning.IGNORE: "插座; 弱电; 采暖; 洞口标注; 卫浴",
+        Meaning.ROOM: "面积",
+    },
+    "Japanese": {
+        Meaning.WINDOW: "カーテンウォール",
+        Meaning.HOLE: "マンホール; 側溝; 電気ピット",
+        Meaning.EQUIPMENT: "機械基礎; タンク; 手すり; スロープ",
+        Meaning.IGNORE: "什器; 衛生器具; コンセント; 天井; 屋根",
+    },
+    "Korean": {
+        Meaning.WALL: "조적; 칸막이",
+        Meaning.WINDOW: "유리",
+        Meaning.HOLE: "맨홀; 집수정; 전기피트",
+        Meaning.EQUIPMENT: "엘리베이터; 난간; 기계기초; 탱크",
+        Meaning.IGNORE: "조명; 전기; 배관; 천장; 소방",
+    },
+}
+
+
+@pytest.mark.parametrize(
+    ("meaning", "names"),
+    [
+        pytest.param(meaning, names, id=f"{language}-{meaning}")
+        for language, of_kind in VOCABULARY.items()
+        for meaning, names in of_kind.items()
+    ],
+)
+def test_each_language_has_its_words_for_each_kind(meaning: Meaning, names: str) -> None:
+    table = layer_table()
+    understood = {name: table.of_layer(name).meaning for name in names.split("; ")}
+    assert understood == dict.fromkeys(understood, meaning)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "MURO LINDERO",
+        "Wand Straße",
+        "Mur côté jardin",
+        "Divisória móvel",
+        "MOBILE PARTITION",
+        "Muros corte",
+        "Wand Schnitt",
+        "FOUNDATION WALL",
+        "Treppenhaus Wände",
+        "Schachtwände",
+    ],
+)
+def test_walls_are_walls_whatever_they_are_named_after(name: str) -> None:
+    assert layer_table().of_layer(name).meaning is Meaning.WALL
+
+
+@pytest.mark.parametrize("name", ["Corte A-A", "Schnitt", "канализация", "FENCE", "USA", "Cuisine"])
+def test_words_that_may_be_harmless_or_stop_the_robot_say_nothing(name: str) -> None:
+    assert layer_table().of_layer(name).meaning is None
+
+
+@pytest.mark.parametrize(
+    ("name", "as_good_as"),
+    [
+        ("kapı", "KAPI"),
+        ("MERDİVEN", "merdiven"),
+        ("Słupy", "SLUPY"),
+        ("Vægge", "VAEGGE"),
+        ("SØJLER", "sojler"),
+        ("Gros œuvre", "GROS OEUVRE"),
+        ("Mobilie\u0301r", "Mobiliér"),
+    ],
+)
+def test_letters_of_some_languages_are_as_good_as_plain_ones(name: str, as_good_as: str) -> None:
+    table = layer_table()
+    verdict = table.of_layer(name)
+    assert verdict.meaning is not None
+    assert verdict == table.of_layer(as_good_as)
+
+
 @pytest.mark.parametrize(
     "name",
     [

@@ -33,6 +33,11 @@ HUMP: Final = re.compile(r"(?<=[a-z])(?=[A-Z])")
 """Where `OuterWall` parts into two words."""
 
 
+PLAIN: Final = str.maketrans(
+    {"ı": "i", "ł": "l", "đ": "d", "ð": "d", "ø": "o", "æ": "ae", "œ": "oe"}
+)
+"""Letters that are no others with an accent, and what is written in their place without them."""
+
 EXACT: Final = "="
 """In front of a name: this name and no other, letter for letter."""
 
@@ -296,14 +301,14 @@ def is_like(name: str, pattern: str) -> bool:
 
 @cache
 def _words(name: str) -> frozenset[str]:
-    parted = HUMP.sub(" ", name)
-    return frozenset(_folded(word) for text in (name, parted) for word in WORD.findall(text))
+    texts = (_folded(name), _folded(HUMP.sub(" ", name)))
+    return frozenset(word for text in texts for word in WORD.findall(text))
 
 
 @cache
 def _folded(text: str) -> str:
-    """The text without case and accents; letters such as ł or ø, which are no accents, stay."""
+    """The text without case, accents and letters that only some languages have."""
     if text.isascii():
         return text.lower()
     decomposed = unicodedata.normalize("NFKD", text.casefold())
-    return "".join(c for c in decomposed if not unicodedata.combining(c))
+    return "".join(c for c in decomposed if not unicodedata.combining(c)).translate(PLAIN)
