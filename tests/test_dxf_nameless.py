@@ -156,6 +156,13 @@ def test_one_or_two_may_be_a_threshold_and_are_left_out(n_lines: int, tmp_path: 
     assert said(plan, "unclassified-left-out")
 
 
+def test_pattern_of_a_wall_is_no_window(tmp_path: Path) -> None:
+    pattern: Lines = [(x, 0, x, 250) for x in range(2000, 2301, 60)]
+    plan = plan_of(flat(pattern), tmp_path)
+    assert free_mm2(plan) == pytest.approx(ROOM_MM2, rel=1e-9)
+    assert not said(plan, "window-by-look")
+
+
 def test_dashed_pairs_are_beams_and_left_out(tmp_path: Path) -> None:
     document = flat(PARTITION)
     document.linetypes.add("HIDDEN", [9.525, 6.35, -3.175])

@@ -89,13 +89,17 @@ def _straight(features: Sequence[Feature]) -> list[LineString]:
 def _panes(
     lines: Sequence[Feature], doors: Sequence[Feature], known: Sequence[LineString]
 ) -> list[Feature]:
-    """The lines of windows, of each of which no two are farther apart than the faces of a wall."""
+    """The lines of windows: longer than a wall is thick, and not farther apart.
+
+    Shorter ones are the pattern of a wall, from face to face.
+    """
     nameless = {id(feature.placed) for feature in lines}
     found = []
     for window in windows([*lines, *doors], known, frozenset()):
-        is_nameless = all(id(pane.placed) in nameless for pane in window)
-        middles = shapely.multipoints([line.centroid for line in as_lines(window)])
-        if is_nameless and shapely.minimum_bounding_radius(middles) <= FACES_MM / 2:
+        panes = as_lines(window)
+        middles = shapely.multipoints([pane.centroid for pane in panes])
+        fits = shapely.minimum_bounding_radius(middles) <= FACES_MM / 2 < panes[0].length / 2
+        if fits and all(id(pane.placed) in nameless for pane in window):
             found += window
     return found
 
