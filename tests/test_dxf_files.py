@@ -1,5 +1,6 @@
 """Files as they come: of other kinds, damaged, in other encodings."""
 
+import codecs
 import contextlib
 import gc
 import io
@@ -211,6 +212,54 @@ def test_western_names_stay_western(tmp_path: Path) -> None:
     plan = read(path, ReadOptions(units="mm"))
     assert {o.layer for o in plan.obstacles} == {"Wände", "Stützen"}
     assert "encoding" not in codes(plan)
+
+
+TURKISH = {"Kap\u0131": "wall", "Ta\u015f\u0131y\u0131c\u0131 kolon": "column"}
+"""Names for doors and bearing columns; in Japanese code pages the first ends in a door."""
+
+
+@pytest.mark.parametrize("names", [tuple(TURKISH), ("b\u00e2timent",)])
+def test_names_in_right_utf8_stay_as_they_are(names: tuple[str, ...], tmp_path: Path) -> None:
+    document = drawing()
+    for x, layer in zip((1000, 3000), names, strict=False):
+        rectangle(document.modelspace(), x, 1000, x + 400, 1400, layer=layer)
+    document.modelspace().add_text("D\u00f6\u015feme", dxfattribs={"layer": "TEXT"})
+    plan = plan_of(document, tmp_path)
+    assert plan.source.encoding == "utf-8"
+    assert "encoding" not in codes(plan)
+    assert {o.layer for o in plan.obstacles} <= set(names)
+
+
+@pytest.mark.parametrize("claimed", ["ANSI_1252", "ANSI_1254", "ANSI_1250"])
+def test_utf8_under_a_code_page_of_single_bytes_is_told_by_its_bytes(
+    claimed: str, tmp_path: Path
+) -> None:
+    text = r12_with(TURKISH).replace("ANSI_1252", claimed)
+    path = tmp_path / "plan.dxf"
+    path.write_bytes(text.encode())
+    plan = read(path, ReadOptions(units="mm"))
+    assert plan.source.encoding == "utf-8"
+    assert "encoding" in codes(plan)
+
+
+def test_byte_order_mark_goes_before_the_code_page(tmp_path: Path) -> None:
+    path = tmp_path / "plan.dxf"
+    path.write_bytes(codecs.BOM_UTF8 + r12_with(TURKISH).encode())
+    plan = read(path, ReadOptions(units="mm"))
+    assert plan.source.encoding == "utf-8"
+    assert "encoding" not in codes(plan)
+
+
+def test_one_name_that_means_something_by_chance_leaves_no_encoding(tmp_path: Path) -> None:
+    # storeroom; read as Western European it is a row of accented letters
+    name = "".join(map(chr, (0x43A, 0x43B, 0x430, 0x434, 0x43E, 0x432, 0x430, 0x44F)))
+    own = tmp_path / "layers.toml"
+    chance = name.encode("cp1251").decode("cp1252")
+    own.write_text(f'[layers]\nwall = ["*{chance}*"]\n', encoding="utf-8")
+    path = tmp_path / "plan.dxf"
+    text = r12_with({name: ""}).replace("ANSI_1252", "ANSI_1251")
+    path.write_bytes(text.encode("cp1251"))
+    assert read(path, ReadOptions(units="mm", layers=own)).source.encoding == "cp1251"
 
 
 def test_encoding_option_goes_before_the_header(tmp_path: Path) -> None:

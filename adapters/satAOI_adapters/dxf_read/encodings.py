@@ -2,11 +2,16 @@
 
 Programs write GBK under a Western code page and UTF-8 under a Chinese one. Nothing fails then,
 the names only turn into others, and no layer is recognised. The names themselves tell: the
-encoding in which most of them mean something is the right one.
+encoding in which most of them mean something is the right one. By chance a name or two mean
+something in a wrong one, too: of the letters of Turkish some become a Japanese door. So the
+encoding declared is left only for names that look like writing, and for one name only where it
+does not make writing of all itself. Bytes that are UTF-8 are so by chance only where two of them
+make a Chinese character, so they are hardly ever of a code page of single bytes.
 """
 
 import codecs
 import re
+import unicodedata
 from dataclasses import dataclass
 from typing import Final
 
@@ -18,7 +23,7 @@ from ezdxf.lldxf.encoding import (
 )
 from ezdxf.tools.codepage import toencoding
 
-from satAOI_adapters.layers import LayerTable
+from satAOI_adapters.layers import WORD, LayerTable
 from satAOI_geo.errors import InputError
 from satAOI_geo.plan import Finding
 
@@ -27,6 +32,18 @@ UTF8_SINCE: Final = "AC1021"
 
 CANDIDATES: Final = ("utf-8", "gbk", "big5", "cp932", "cp949", "cp1251", "cp1250", "cp1252")
 """Encodings that are tried when the one declared makes no sense, the commonest first."""
+
+TWO_BYTES: Final = ("gbk", "cp932", "cp949", "cp950")
+"""Code pages of which two bytes that make a character may also make one of UTF-8."""
+
+LEAD: Final = 2
+"""Names that must mean more in another encoding than in one in which all look like writing."""
+
+EASTERN: Final = frozenset({"CJK", "HIRAGANA", "KATAKANA", "KATAKANA-HIRAGANA", "HALFWIDTH"})
+"""Scripts that Chinese and Japanese mix, by the first word of their characters' names."""
+
+SIGNS: Final = ("S", "C")
+"""Categories of characters that names are seldom written with: symbols and controls."""
 
 LAYER_NAME: Final = re.compile(
     rb"^[ \t]*8[ \t]*\r?\n[ \t]*([^\r\n]*[\x80-\xff][^\r\n]*)", re.MULTILINE
@@ -65,7 +82,7 @@ def decoded(content: bytes, table: LayerTable, option: str | None) -> Decoded:
     """
     declared = _declared(content)
     names = sorted(set(LAYER_NAME.findall(content)))
-    best = _known(option) if option is not None else _best(names, declared, table)
+    best = _known(option) if option is not None else _best(content, names, declared, table)
     text = content.removeprefix(codecs.BOM_UTF8).decode(best, errors="surrogateescape")
     if has_dxf_unicode(text):
         text = decode_dxf_unicode(text)
@@ -78,6 +95,8 @@ def decoded(content: bytes, table: LayerTable, option: str | None) -> Decoded:
 
 def _declared(content: bytes) -> str:
     """The encoding that the header names."""
+    if content.startswith(codecs.BOM_UTF8):
+        return "utf-8"
     head = content[:65536]
     version = VERSION.search(head)
     if version is not None and version[1].decode() >= UTF8_SINCE:
@@ -95,20 +114,66 @@ def _known(option: str) -> str:
         ) from error
 
 
-def _best(names: list[bytes], declared: str, table: LayerTable) -> str:
-    """The encoding in which most names mean something; in doubt the one declared."""
-    if not names:
-        return declared
-    return max((declared, *CANDIDATES), key=lambda encoding: _sense(names, encoding, table))
-
-
-def _sense(names: list[bytes], encoding: str, table: LayerTable) -> int:
-    """How many names mean something in an encoding; -1 if one is impossible in it."""
+def _is_utf8(content: bytes) -> bool:
     try:
-        texts = [name.decode(encoding) for name in names]
+        content.decode("utf-8")
     except UnicodeDecodeError:
-        return -1
-    return sum(table.of_layer(text).meaning is not None for text in texts)
+        return False
+    return True
+
+
+def _best(content: bytes, names: list[bytes], declared: str, table: LayerTable) -> str:
+    """The encoding in which most names mean something; in doubt the one declared."""
+    is_utf8 = _is_utf8(content)
+    if not names or (declared == "utf-8" and is_utf8):
+        return declared
+    likely = "utf-8" if is_utf8 and declared not in TWO_BYTES else declared
+    texts = {encoding: _texts(names, encoding) for encoding in (likely, *CANDIDATES)}
+    written = {encoding: list(filter(_looks_written, texts[encoding])) for encoding in texts}
+    sense = {encoding: _n_meant(written[encoding], table) for encoding in texts}
+    best = max(sense, key=lambda encoding: (sense[encoding], len(written[encoding])))
+    if not texts[likely]:
+        return best
+    is_writing = len(written[likely]) == len(names)
+    lead = LEAD if is_writing and not (is_utf8 and best == "utf-8") else 1
+    return best if sense[best] - _n_meant(texts[likely], table) >= lead else likely
+
+
+def _texts(names: list[bytes], encoding: str) -> list[str]:
+    """Names in an encoding; none if one of them is impossible in it."""
+    try:
+        return [name.decode(encoding) for name in names]
+    except UnicodeDecodeError:
+        return []
+
+
+def _n_meant(names: list[str], table: LayerTable) -> int:
+    """How many names mean something."""
+    return sum(table.of_layer(name).meaning is not None for name in names)
+
+
+def _looks_written(name: str) -> bool:
+    """Whether each word is of one script, and if of Latin, mostly of letters without accents.
+
+    Before and after Chinese and Japanese stand Latin capitals: `A墙`, but no `T眉ren`.
+    """
+    if any(unicodedata.category(c)[0] in SIGNS for c in name if not c.isascii()):
+        return False
+    return all(_is_one_script(word) for word in WORD.findall(name) if not word.isascii())
+
+
+def _is_one_script(word: str) -> bool:
+    latin = [c for c in word if _script(c) == "LATIN"]
+    others = {_script(c) for c in word} - {"LATIN"}
+    if not others:
+        return 2 * sum(c.isascii() for c in latin) > len(latin)
+    is_one = len(others) == 1 or others <= EASTERN
+    return is_one and all(c.isascii() and c.isupper() for c in latin)
+
+
+def _script(letter: str) -> str:
+    """`LATIN`, `CJK`: the first word of a character's name."""
+    return unicodedata.name(letter, "").partition(" ")[0]
 
 
 def _findings(names: list[bytes], declared: str, best: str) -> tuple[Finding, ...]:

@@ -7,7 +7,7 @@ can be read on paper. Each sort of length speaks for the units in which it falls
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypeAlias
 
 import numpy as np
 import shapely
@@ -36,8 +36,14 @@ LEAD: Final = 0.2
 SLIM: Final = 0.25
 """A wall is thinner than this share of its length."""
 
+LEAST_WEIGHT: Final = 0.5
+"""Signs that weigh less than this together tell no unit: a size alone is no evidence."""
+
 OFTEN: Final = 20
 """A sign seen so many times needs no second one to contradict a header."""
+
+OFTEN_DOORS: Final = 4
+"""The same of doors, which are as wide as people, while a gate or two are not."""
 
 MAX_LINES: Final = 1500
 """Wall lines that are compared with each other, the longest first."""
@@ -52,7 +58,9 @@ class Sign:
         least_mm: Hardly any is smaller.
         most_mm: Hardly any is larger.
         weight: How much it counts beside the others.
-        at_least: Seen so many times, it may contradict a header; 0 if never.
+        at_least: Seen so many times, it may contradict a header together with another sign; 0 if
+            never.
+        often: Seen so many times, it may do so alone.
     """
 
     name: str
@@ -60,32 +68,40 @@ class Sign:
     most_mm: float
     weight: float
     at_least: int
+    often: int = OFTEN
 
 
-DOORS: Final = Sign("door widths", 550, 1350, 1.0, at_least=2)
+DOORS: Final = Sign("door widths", 550, 1350, 1.0, at_least=1, often=OFTEN_DOORS)
 ARCS: Final = Sign("quarter turns", 550, 1350, 0.4, at_least=0)
-WALLS: Final = Sign("wall thickness", 60, 650, 1.0, at_least=4)
+WALLS: Final = Sign("wall thicknesses", 60, 650, 1.0, at_least=4)
 COLUMNS: Final = Sign("column sizes", 90, 1600, 0.7, at_least=4)
 TEXTS: Final = Sign("text heights", 40, 3000, 0.5, at_least=5)
 DIMENSIONS: Final = Sign("dimensions", 200, 60_000, 0.4, at_least=0)
 EXTENT: Final = Sign("overall size", 3000, 500_000, 0.3, at_least=0)
 
+Known: TypeAlias = Sequence[tuple[Sign, FloatArray]]
+"""Sorts of length and which of them were found, in drawing units."""
+
 CUSTOM: Final = 0.7
 """How much feet and inches as the drawing's number format count beside the other signs."""
+
+CUSTOM_NAME: Final = "lengths in feet and inches"
 
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """The unit that most of the evidence speaks for.
+    """The units that most of the evidence speaks for.
 
     Attributes:
-        unit: Key of `units.MM_PER_UNIT`.
-        reasons: What speaks for it, in words.
-        against: Units that two signs, or one seen often, rule out.
+        units: Keys of `units.MM_PER_UNIT`; more than one where none of them leads.
+        reasons: What speaks for these, in words: a plural.
+        doubted: Units in which a sort of length is out of range.
+        against: Units that two sorts, or one seen often, rule out.
     """
 
-    unit: str
+    units: tuple[str, ...]
     reasons: str
+    doubted: frozenset[str] = frozenset()
     against: frozenset[str] = frozenset()
 
 
@@ -96,7 +112,7 @@ def estimate(
     *,
     in_feet_and_inches: bool,
 ) -> Estimate | None:
-    """The unit of a drawing, or None if the evidence is thin or divided.
+    """The likely units of a drawing, or None if the evidence is thin or divided.
 
     Args:
         features: What is drawn, in drawing units, with its meaning.
@@ -123,29 +139,53 @@ def estimate(
     for sign, lengths in known:
         for unit in scores:
             scores[unit] += sign.weight * _share(sign, lengths, unit) / total
-    best = _leading(scores, CANDIDATES) or _leading(scores, scores)
-    if best is None:
+    likely = _likely(scores)
+    if not likely:
         return None
-    for_it = [sign.name for sign, lengths in known if _share(sign, lengths, best) >= ENOUGH]
-    against = frozenset(unit for unit in MM_PER_UNIT if _is_ruled_out(unit, known))
-    return Estimate(best, " and ".join(for_it), against - {best})
-
-
-def _leading(scores: Mapping[str, float], units: Iterable[str]) -> str | None:
-    """The unit that enough of the evidence speaks for, and clearly more than for the others."""
-    best, second, *_ = sorted(units, key=scores.__getitem__, reverse=True)
-    is_clear = scores[best] >= ENOUGH and scores[best] - scores[second] >= LEAD
-    return best if is_clear else None
-
-
-def _is_ruled_out(unit: str, known: Sequence[tuple[Sign, FloatArray]]) -> bool:
-    """Whether two sorts of length, or one seen often, are out of range in a unit."""
-    seen = [
-        lengths.size
+    for_it = [
+        sign
         for sign, lengths in known
-        if 0 < sign.at_least <= lengths.size and _share(sign, lengths, unit) <= 1 - ENOUGH
+        if any(_share(sign, lengths, unit) >= ENOUGH for unit in likely)
     ]
-    return len(seen) > 1 or any(count >= OFTEN for count in seen)
+    is_custom = in_feet_and_inches and "in" in likely
+    if sum(sign.weight for sign in for_it) + CUSTOM * is_custom < LEAST_WEIGHT:
+        return None
+    names = [*[CUSTOM_NAME] * is_custom, *(sign.name for sign in for_it)]
+    out_of_range = {unit: _out_of_range(unit, known) for unit in MM_PER_UNIT if unit not in likely}
+    return Estimate(
+        likely,
+        " and ".join(names),
+        doubted=frozenset(unit for unit, signs in out_of_range.items() if signs),
+        against=frozenset(unit for unit, signs in out_of_range.items() if _rule_out(signs)),
+    )
+
+
+def _likely(scores: Mapping[str, float]) -> tuple[str, ...]:
+    """The unit that leads, else those between which the evidence is divided."""
+    usual, all_ = _foremost(scores, CANDIDATES), _foremost(scores, scores)
+    return all_ if len(all_) == 1 and len(usual) != 1 else usual or all_
+
+
+def _foremost(scores: Mapping[str, float], units: Iterable[str]) -> tuple[str, ...]:
+    """The unit that enough of the evidence speaks for, and those that are not clearly behind it."""
+    ordered = sorted(units, key=scores.__getitem__, reverse=True)
+    best = scores[ordered[0]]
+    return tuple(unit for unit in ordered if best >= ENOUGH and best - scores[unit] < LEAD)
+
+
+def _out_of_range(unit: str, known: Known) -> Known:
+    """The sorts of length that are mostly out of range in a unit."""
+    return [
+        (sign, lengths)
+        for sign, lengths in known
+        if sign.at_least and _share(sign, lengths, unit) <= 1 - ENOUGH
+    ]
+
+
+def _rule_out(signs: Known) -> bool:
+    """Whether two sorts of length, or one, were seen often enough to rule a unit out."""
+    seen = [sign for sign, lengths in signs if lengths.size >= sign.at_least]
+    return len(seen) > 1 or any(lengths.size >= sign.often for sign, lengths in signs)
 
 
 def _share(sign: Sign, lengths: FloatArray, unit: str) -> float:
@@ -187,10 +227,23 @@ def _shorter_side(path: Path) -> float:
     return float(np.ptp(corners, axis=0).min())
 
 
-def _wall_thicknesses(features: Sequence[tuple[Meaning | None, Feature]]) -> FloatArray:
-    """For each line of a wall, the distance to the nearest parallel one that runs beside it."""
-    _, distances = beside(feature for meaning, feature in features if meaning is Meaning.WALL)
-    return np.asarray(distances[np.isfinite(distances)])
+def _wall_thicknesses(
+    features: Sequence[tuple[Meaning | None, Feature]],
+) -> FloatArray:
+    """For each line of a wall its own width, or the distance to the nearest one that runs beside.
+
+    Lines with a width are the middles of walls: what runs beside them is another wall.
+    """
+    walls = [feature for meaning, feature in features if meaning is Meaning.WALL]
+    _, distances = beside(wall for wall in walls if not wall.width_mm)
+    widths = [
+        wall.width_mm
+        for wall in walls
+        if wall.width_mm
+        for path in wall.paths
+        for piece in path.pieces
+    ]
+    return np.concatenate((distances[np.isfinite(distances)], np.array(widths)))
 
 
 def beside(features: Iterable[Feature]) -> tuple[FloatArray, FloatArray]:

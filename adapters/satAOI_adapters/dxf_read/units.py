@@ -26,8 +26,9 @@ HEADER_UNITS: Final[Mapping[int, str]] = {
 USUAL: Final = ("mm", "cm", "m", "in", "ft")
 """Units whose sizes an error message offers."""
 
-CONTRADICTION: Final = 5.0
-"""A header this many times off the estimate is not believed: cm and inch are 2.5 times apart."""
+SMALLEST_M: Final = 2.0
+LARGEST_M: Final = 2000.0
+"""No plan is shorter or longer than this."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,41 +83,73 @@ def unit_of(
         return Known(Unit(option, "option"))
     header = HEADER_UNITS.get(code)
     if header is not None:
-        _check_plausible(header, guess, size, name)
-        return Known(Unit(header, "header"))
-    if guess is not None:
-        return Known(Unit(guess.unit, "estimate"), (_estimated(guess, size),))
+        return Known(Unit(header, "header"), _doubts(header, guess, size, name))
+    if guess is not None and len(guess.units) == 1:
+        return Known(Unit(guess.units[0], "estimate"), (_estimated(guess, size),))
+    tells = "nothing in it tells" if guess is None else _told(guess, size)
     raise UnitError(
-        f"no unit of length in '{name}' ($INSUNITS is {code}), and nothing in it tells; "
-        f"{_choices(size)}"
+        f"no unit of length in '{name}' ($INSUNITS is {code}), and {tells}; {_choices(size)}"
     )
 
 
-def _check_plausible(
-    header: str, guess: Estimate | None, size: tuple[float, float], name: str
-) -> None:
-    """Refuse a header that doors, walls and texts contradict."""
-    if guess is None or header not in guess.against or _factor(guess.unit, header) <= CONTRADICTION:
+def hold_size(unit: Unit, size_mm: tuple[float, float] | None, name: str) -> None:
+    """Refuse a plan that is no building's size, unless the user says what its unit is.
+
+    Args:
+        unit: Of the drawing.
+        size_mm: Width and height of what stands in the plan that is read, or is its floor; None if
+            there is nothing of this.
+        name: The file's name, for messages.
+
+    Raises:
+        UnitError: If the plan is too small or too large.
+    """
+    if size_mm is None or unit.source == "option":
         return
+    if SMALLEST_M <= max(size_mm) / 1000 <= LARGEST_M:
+        return
+    size = (size_mm[0] / unit.mm, size_mm[1] / unit.mm)
     raise UnitError(
-        f"'{name}' says that its unit is {header}, which makes it {in_metres(size, header)}; its "
-        f"{guess.reasons} say {guess.unit}, which makes it {in_metres(size, guess.unit)}; give "
-        f"--units {guess.unit} or --units {header}"
+        f"'{name}' is read in {unit.name}, which makes the plan in it {in_metres(size, unit.name)}"
+        f"; {_choices(size)}"
     )
 
 
-def _factor(one: str, other: str) -> float:
-    """How many times the larger of two units is the smaller one."""
-    ratio = MM_PER_UNIT[one] / MM_PER_UNIT[other]
-    return max(ratio, 1 / ratio)
+def _doubts(
+    header: str, guess: Estimate | None, size: tuple[float, float], name: str
+) -> tuple[Finding, ...]:
+    """What doors, walls and texts have against a header.
+
+    Raises:
+        UnitError: If they rule it out.
+    """
+    if guess is None or header not in guess.doubted:
+        return ()
+    says = f"says that its unit is {header}, which makes it {in_metres(size, header)}"
+    but = f"but {_told(guess, size)}"
+    options = " or ".join(f"--units {unit}" for unit in guess.units)
+    if header in guess.against:
+        raise UnitError(f"'{name}' {says}, {but}; give {options} or --units {header}")
+    return (
+        Finding(
+            "unit-doubtful",
+            f"the drawing {says}, {but}; it is read in {header}",
+            f"give {options} if the header is wrong, --units {header} if it is right",
+        ),
+    )
+
+
+def _told(guess: Estimate, size: tuple[float, float]) -> str:
+    """What a drawing tells of its unit."""
+    sizes = " or ".join(in_metres(size, unit) for unit in guess.units)
+    return f"its {guess.reasons} say {' or '.join(guess.units)}, which makes it {sizes}"
 
 
 def _estimated(guess: Estimate, size: tuple[float, float]) -> Finding:
     return Finding(
         "unit-estimated",
-        f"the drawing names no unit; its {guess.reasons} say {guess.unit}, which makes it "
-        f"{in_metres(size, guess.unit)}",
-        f"give --units {guess.unit} if that is right, another unit if not",
+        f"the drawing names no unit; {_told(guess, size)}",
+        f"give --units {guess.units[0]} if that is right, another unit if not",
     )
 
 
@@ -128,5 +161,11 @@ def _choices(size: tuple[float, float]) -> str:
 
 def in_metres(size: tuple[float, float], unit: str) -> str:
     """A size in drawing units as metres, were this its unit."""
-    width_m, height_m = (length * MM_PER_UNIT[unit] / 1000 for length in size)
-    return f"{width_m:.3g} × {height_m:.3g} m"
+    width, height = (_three_digits(length * MM_PER_UNIT[unit] / 1000) for length in size)
+    return f"{width} × {height} m"
+
+
+def _three_digits(number: float) -> str:
+    """A number to three digits, as people write it."""
+    rounded = float(f"{number:.3g}")
+    return f"{rounded:.0f}" if rounded >= 1000 else f"{rounded:g}"
