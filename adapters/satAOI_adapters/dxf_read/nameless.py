@@ -35,6 +35,10 @@ ENOUGH_MM: Final = 2000.0
 AT_WALLS: Final = 2
 """So many of them must end at walls that are known: both faces of one end, or one of each."""
 
+MAX_LINES: Final = 5000
+"""Lines that are compared with each other, the longest first: more are no partitions' but drawn
+patterns, furniture and plants."""
+
 TWICE_MM: Final = 5.0
 """Lines closer to each other are drawn twice."""
 
@@ -111,6 +115,8 @@ def _faces(
     lines = as_lines(pieces)
     if not lines:
         return []
+    order = np.argsort(-shapely.length(lines), kind="stable")[:MAX_LINES].tolist()
+    pieces, lines = [pieces[k] for k in order], [lines[k] for k in order]
     along = directions(lines)
     pairs = _facing(lines, along)
     is_face = np.bincount(pairs[:, 0], minlength=len(lines)) > 0
