@@ -115,8 +115,8 @@ def _faces(
     lines = as_lines(pieces)
     if not lines:
         return []
-    order = np.argsort(-shapely.length(lines), kind="stable")[:MAX_LINES].tolist()
-    pieces, lines = [pieces[k] for k in order], [lines[k] for k in order]
+    longest = np.sort(np.argsort(-shapely.length(lines), kind="stable")[:MAX_LINES]).tolist()
+    pieces, lines = [pieces[k] for k in longest], [lines[k] for k in longest]
     along = directions(lines)
     pairs = _facing(lines, along)
     is_face = np.bincount(pairs[:, 0], minlength=len(lines)) > 0
