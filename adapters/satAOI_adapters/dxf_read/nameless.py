@@ -97,9 +97,13 @@ def _panes(
 
     Shorter ones are the pattern of a wall, from face to face.
     """
-    nameless = {id(feature.placed) for feature in lines}
+    # the glass ends half-way between the faces of the wall
+    boxes = shapely.box(*np.array([feature.box() for feature in lines]).T)
+    near, _ = shapely.STRtree(known).query(boxes, predicate="dwithin", distance=FACES_MM / 2)
+    at_walls = [lines[k] for k in np.unique(near).tolist()]
+    nameless = {id(feature.placed) for feature in at_walls}
     found = []
-    for window in windows([*lines, *doors], known, frozenset()):
+    for window in windows([*at_walls, *doors], known, frozenset()):
         panes = as_lines(window)
         middles = shapely.multipoints([pane.centroid for pane in panes])
         fits = shapely.minimum_bounding_radius(middles) <= FACES_MM / 2 < panes[0].length / 2
