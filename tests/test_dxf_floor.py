@@ -418,3 +418,107 @@ def test_open_outline_around_a_lone_column_is_no_floor(tmp_path: Path) -> None:
     rectangle(document.modelspace(), 1000, 1000, 1300, 1300, layer="COLUMN")
     with pytest.raises(DrawingError, match="is open"):
         plan_of(document, tmp_path)
+
+
+YARD = (0, 0, 30_000, 18_000)
+
+
+def foundations(*, n_outside: int = 0) -> Drawing:
+    """Six foundations 5.4 m apart, too far for one plan by themselves, and some far outside."""
+    document = drawing(floor=False)
+    places = [(x, y) for x in (3000, 10_800, 18_600) for y in (3000, 10_400)]
+    places += [(60_000 + 8000 * k, 0) for k in range(n_outside)]
+    for x, y in places:
+        rectangle(document.modelspace(), x, y, x + 2400, y + 2000, layer="EQUIPMENT")
+    return document
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 30.0])
+@pytest.mark.parametrize("outline", [rectangle, four_lines])
+@pytest.mark.parametrize("thickness_mm", [0, 400])
+def test_outline_on_a_nameless_layer_around_what_is_known_bounds_the_floor(
+    thickness_mm: int, outline: Outline, turn_deg: float, tmp_path: Path
+) -> None:
+    document = foundations()
+    space = document.modelspace()
+    outline(space, *YARD, layer="XYZ")
+    if thickness_mm:
+        outline(space, *box(*YARD).buffer(-thickness_mm, join_style="mitre").bounds, layer="XYZ")
+    transform.inplace(space, Matrix44.z_rotate(math.radians(turn_deg)))
+    plan = plan_of(document, tmp_path)
+    wall_m2 = (30 * 18 - 29.2 * 17.2) if thickness_mm else 0.0
+    assert free_m2(plan) == pytest.approx(30 * 18 - 6 * 2.4 * 2.0 - wall_m2)
+    assert not {"several-plans", "floor-guessed"} & set(codes(plan))
+    finding = said(plan, "outline-as-walls")
+    assert "'XYZ' (540.00 m²) encloses 100%" in finding.message
+    assert finding.layer == "XYZ"
+    assert finding.handle
+    assert finding.at_mm is not None
+
+
+def test_gate_in_an_outline_on_a_nameless_layer_is_closed(tmp_path: Path) -> None:
+    document = foundations()
+    corners = [(0, 7000), (0, 0), (30_000, 0), (30_000, 18_000), (0, 18_000), (0, 11_000)]
+    document.modelspace().add_lwpolyline(corners, dxfattribs={"layer": "XYZ"})
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(*YARD))
+    assert "wide-opening-closed" in codes(plan)
+
+
+def test_largest_outline_on_nameless_layers_bounds_the_floor_and_the_others_are_said(
+    tmp_path: Path,
+) -> None:
+    document = foundations()
+    rectangle(document.modelspace(), *YARD, layer="XYZ")
+    rectangle(document.modelspace(), 2000, 2000, 22_000, 14_000, layer="PQR")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(*YARD))
+    assert said(plan, "outline-as-walls").message.endswith("so do 'PQR' (240.00 m²)")
+
+
+def test_outline_drawn_by_faces_goes_before_a_larger_single_line(tmp_path: Path) -> None:
+    document = foundations()
+    rectangle(document.modelspace(), *YARD, layer="XYZ")
+    for distance_mm in (0, 300):
+        x0, y0, x1, y1 = 2000, 2000, 22_000, 14_000
+        inner = (x0 + distance_mm, y0 + distance_mm, x1 - distance_mm, y1 - distance_mm)
+        rectangle(document.modelspace(), *inner, layer="BUILDING")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(2000, 2000, 22_000, 14_000))
+
+
+def test_rectangle_with_a_title_block_does_not_bound_the_floor_but_is_said(tmp_path: Path) -> None:
+    document = foundations()
+    rectangle(document.modelspace(), *YARD, layer="XYZ")
+    block = [(24_000, 0), (24_000, 2000), (30_000, 2000)]
+    document.modelspace().add_lwpolyline(block, dxfattribs={"layer": "XYZ"})
+    plan = plan_of(document, tmp_path)
+    assert "floor-guessed" in codes(plan)
+    assert "'XYZ' (540.00 m²)" in said(plan, "outline-not-used").message
+
+
+def test_outline_that_most_of_what_is_known_lies_outside_bounds_no_floor(tmp_path: Path) -> None:
+    document = foundations(n_outside=4)
+    rectangle(document.modelspace(), *YARD, layer="XYZ")
+    assert "outline-as-walls" not in codes(plan_of(document, tmp_path))
+
+
+def test_foundation_outside_leaves_the_outline_around_the_others(tmp_path: Path) -> None:
+    document = foundations(n_outside=1)
+    rectangle(document.modelspace(), *YARD, layer="XYZ")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(*YARD))
+    assert "encloses 86%" in said(plan, "outline-as-walls").message
+    assert "several-plans" in codes(plan)
+
+
+@pytest.mark.parametrize("known", ["WALL", "FLOOR"])
+def test_outline_on_a_nameless_layer_counts_for_nothing_where_walls_or_a_floor_are_drawn(
+    known: str, tmp_path: Path
+) -> None:
+    document = foundations()
+    rectangle(document.modelspace(), *YARD, layer="XYZ")
+    rectangle(document.modelspace(), 2000, 2000, 22_000, 14_000, layer=known)
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(2000, 2000, 22_000, 14_000))
+    assert "outline-as-walls" not in codes(plan)

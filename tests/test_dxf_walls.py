@@ -612,7 +612,7 @@ def test_pattern_wider_than_walls_on_their_layer_is_that_of_a_floor_and_said(
 
 def test_pipes_among_foundations_are_no_walls_by_their_look(tmp_path: Path) -> None:
     document = house(opening_mm=900.0, layer="XYZ")
-    rectangle(document.modelspace(), 4000, 2000, 5300, 3300, layer="EQUIPMENT")
+    rectangle(document.modelspace(), 20_000, 0, 24_000, 3000, layer="EQUIPMENT")
     plan = plan_of(document, tmp_path)
     assert {obstacle.kind for obstacle in plan.obstacles} == {Kind.EQUIPMENT}
 
@@ -715,6 +715,26 @@ def test_door_whose_arc_is_not_about_its_hinge_is_a_door_all_the_same(
     plan = plan_of(document, tmp_path)
     assert [o.shape for o in plan.obstacles] == [o.shape for o in bare.obstacles]
     assert "door-among-walls" in codes(plan)
+
+
+@pytest.mark.parametrize("side", ["spline", "spline of degree 3", "three in line"])
+def test_straight_sides_are_no_swings_however_they_are_drawn(side: str, tmp_path: Path) -> None:
+    # Rhino and Inkscape write each straight line as a spline
+    corners = [(2000, 2200), (2900, 2200), (2900, 2400), (2000, 2400), (2000, 2200)]
+    on = {"layer": "WALL"}
+    as_lines, document = drawing(), drawing()
+    for start, end in pairwise(map(Vec3, corners)):
+        as_lines.modelspace().add_line(start, end, dxfattribs=on)
+        spots = [start.lerp(end, share) for share in (0, 1 / 3, 2 / 3, 1)]
+        if side == "spline":
+            document.modelspace().add_open_spline([start, end], degree=1, dxfattribs=on)
+        elif side == "spline of degree 3":
+            document.modelspace().add_open_spline(spots, dxfattribs=on)
+        else:
+            document.modelspace().add_lwpolyline([spot.vec2 for spot in spots], dxfattribs=on)
+    plan = plan_of(document, tmp_path)
+    assert plan.obstacle_region().equals(plan_of(as_lines, tmp_path).obstacle_region())
+    assert "door-among-walls" not in codes(plan)
 
 
 def test_three_sides_of_a_square_about_the_end_of_a_line_are_no_swing(tmp_path: Path) -> None:

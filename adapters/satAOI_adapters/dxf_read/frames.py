@@ -124,18 +124,6 @@ class Sheet:
         """The first of what draws the frames."""
         return self.drawn[int(np.flatnonzero(self.is_frame)[0])]
 
-    def faces_mm(self, widest_mm: float) -> float:
-        """How far apart two of the rectangles are that may be the faces of a wall; 0 if none are.
-
-        Args:
-            widest_mm: No wall is thicker.
-        """
-        for outer, inner in pairwise(self.frames):
-            apart_mm = np.abs(np.subtract(outer, inner))
-            if apart_mm.max() <= widest_mm and np.ptp(apart_mm) <= EVEN_MM:
-                return float(apart_mm.max())
-        return 0.0
-
 
 def without_frames(
     near: Sequence[tuple[Seen, Feature]], mm_per_unit: float
@@ -162,18 +150,32 @@ def without_frames(
     )
 
 
+def is_sheet(lines: GeometryArray) -> bool:
+    """Whether lines, in millimetres, are a sheet's frame with something joined, as a title block.
+
+    Rectangles as far apart as the faces of walls are none.
+    """
+    lines = _upright(lines, 1.0)
+    frames, is_frame = _frames(lines)
+    if not frames or _faces_mm(frames, WALL_MM):
+        return False
+    rims = shapely.union_all(lines[is_frame])
+    return bool(shapely.dwithin(rims, lines[~is_frame], CLOSE_GAPS_MM).any())
+
+
 def _by_doors(sheet: Sheet) -> Finding | None:
     """What is to be said where doors swing: a frame, if they are those of the building in it."""
     rest = sheet.rest
     is_building = any(map(n_swings, rest)) and look_like_walls(rest, sheet.mm_per_unit)
-    return _as_frame(sheet, "") if is_building and not sheet.faces_mm(FACES_MM) else None
+    return _as_frame(sheet, "") if is_building and not _faces_mm(sheet.frames, FACES_MM) else None
 
 
 def _by_rooms(sheet: Sheet) -> Finding | None:
     """What is to be said where no door swings, if walls in the rectangle enclose rooms."""
     if not _may_be_guessed(sheet):
         return None
-    rooms = enclosed(list(sheet.lines[~sheet.is_out])).region
+    is_wall = np.array([entity.verdict.meaning is Meaning.WALL for entity, _ in sheet.drawn])
+    rooms = enclosed(list(sheet.lines[is_wall & ~sheet.is_out])).region
     if rooms.is_empty:
         return None
     areas = (
@@ -212,6 +214,20 @@ def _frames(lines: GeometryArray) -> tuple[list[tuple[float, ...]], BoolArray]:
     return frames, is_frame
 
 
+def _faces_mm(frames: Sequence[tuple[float, ...]], widest_mm: float) -> float:
+    """How far apart two of the rectangles are that may be the faces of a wall; 0 if none are.
+
+    Args:
+        frames: Left, bottom, right, top of each, the outermost first.
+        widest_mm: No wall is thicker.
+    """
+    for outer, inner in pairwise(frames):
+        apart_mm = np.abs(np.subtract(outer, inner))
+        if apart_mm.max() <= widest_mm and np.ptp(apart_mm) <= EVEN_MM:
+            return float(apart_mm.max())
+    return 0.0
+
+
 def _may_be_guessed(sheet: Sheet) -> bool:
     """Whether only guesses say that the rectangle is a wall, and the floor hangs on it."""
     verdicts = [entity.verdict for entity, _ in sheet.drawn]
@@ -231,7 +247,7 @@ def _signs_of_a_wall(sheet: Sheet, rooms: BaseGeometry) -> Iterator[str]:
     """
     if not look_like_walls(sheet.rest, sheet.mm_per_unit):
         yield "the lines in it do not run side by side as the faces of walls do"
-    faces_mm = sheet.faces_mm(WALL_MM)
+    faces_mm = _faces_mm(sheet.frames, WALL_MM)
     _, thicknesses = beside(sheet.rest)
     is_as_thick = np.abs(thicknesses * sheet.mm_per_unit - faces_mm) <= EVEN_MM
     if faces_mm and is_as_thick.any():

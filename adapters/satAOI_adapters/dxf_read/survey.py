@@ -12,6 +12,7 @@ from ezdxf.document import Drawing
 from shapely.geometry import Polygon
 
 from satAOI_adapters.dxf_read import limits
+from satAOI_adapters.dxf_read.boundary import with_boundary
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.dashed import dashed_among
 from satAOI_adapters.dxf_read.entities import DRAWN, features_of, mask_of
@@ -276,9 +277,9 @@ def _looked_at(
     if isinstance(known, UnitError):
         return near, ()
     # what looks like walls may have a frame around it, which no tile has
-    stages = (with_lookalikes, without_frames) if is_named else (without_frames, with_tiles)
+    of_named = (with_lookalikes, with_boundary, without_frames)
     findings: list[Finding] = []
-    for stage in stages:
+    for stage in of_named if is_named else (without_frames, with_tiles):
         near, said = stage(near, known.unit.mm)
         findings.extend(said)
     return near, tuple(findings)
