@@ -465,26 +465,44 @@ def test_gate_in_an_outline_on_a_nameless_layer_is_closed(tmp_path: Path) -> Non
     assert "wide-opening-closed" in codes(plan)
 
 
-def test_largest_outline_on_nameless_layers_bounds_the_floor_and_the_others_are_said(
-    tmp_path: Path,
+@pytest.mark.parametrize("layer", ["PQR", "XYZ"])
+def test_innermost_outline_around_what_is_known_bounds_the_floor_and_the_others_are_said(
+    layer: str, tmp_path: Path
 ) -> None:
     document = foundations()
     rectangle(document.modelspace(), *YARD, layer="XYZ")
-    rectangle(document.modelspace(), 2000, 2000, 22_000, 14_000, layer="PQR")
-    plan = plan_of(document, tmp_path)
-    assert floor_of(plan).equals(box(*YARD))
-    assert said(plan, "outline-as-walls").message.endswith("so do 'PQR' (240.00 m²)")
-
-
-def test_outline_drawn_by_faces_goes_before_a_larger_single_line(tmp_path: Path) -> None:
-    document = foundations()
-    rectangle(document.modelspace(), *YARD, layer="XYZ")
-    for distance_mm in (0, 300):
-        x0, y0, x1, y1 = 2000, 2000, 22_000, 14_000
-        inner = (x0 + distance_mm, y0 + distance_mm, x1 - distance_mm, y1 - distance_mm)
-        rectangle(document.modelspace(), *inner, layer="BUILDING")
+    rectangle(document.modelspace(), 2000, 2000, 22_000, 14_000, layer=layer)
     plan = plan_of(document, tmp_path)
     assert floor_of(plan).equals(box(2000, 2000, 22_000, 14_000))
+    assert said(plan, "outline-as-walls").message.endswith("so do 'XYZ' (540.00 m²)")
+
+
+def test_axes_on_a_nameless_layer_bound_no_floor(tmp_path: Path) -> None:
+    document = foundations()
+    for x in range(0, 24_001, 6000):
+        document.modelspace().add_line((x, -2000), (x, 20_000), dxfattribs={"layer": "XYZ"})
+    for y in range(0, 18_001, 6000):
+        document.modelspace().add_line((-2000, y), (26_000, y), dxfattribs={"layer": "XYZ"})
+    assert "outline-as-walls" not in codes(plan_of(document, tmp_path))
+
+
+def test_joints_between_the_sides_of_an_outline_are_no_walls(tmp_path: Path) -> None:
+    document = foundations()
+    rectangle(document.modelspace(), *YARD, layer="XYZ")
+    document.modelspace().add_line((8000, 0), (8000, 18_000), dxfattribs={"layer": "PQR"})
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(*YARD))
+    assert standing(plan, "PQR") == []
+
+
+def test_outline_drawn_by_faces_goes_before_a_smaller_single_line(tmp_path: Path) -> None:
+    document = foundations()
+    rectangle(document.modelspace(), 2000, 2000, 22_000, 14_000, layer="XYZ")
+    rectangle(document.modelspace(), *YARD, layer="PQR")
+    inner = box(*YARD).buffer(-300, join_style="mitre").bounds
+    rectangle(document.modelspace(), *inner, layer="PQR")
+    plan = plan_of(document, tmp_path)
+    assert floor_of(plan).equals(box(*YARD))
 
 
 def test_rectangle_with_a_title_block_does_not_bound_the_floor_but_is_said(tmp_path: Path) -> None:

@@ -22,11 +22,9 @@ from satAOI_adapters.dxf_read.enclosure import enclosed
 from satAOI_adapters.dxf_read.estimate import EXTENT
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.frames import is_sheet
-from satAOI_adapters.dxf_read.groups import linked
 from satAOI_adapters.dxf_read.linework import WALL_MM
 from satAOI_adapters.dxf_read.lookalikes import BOUNDING, look_like_walls
 from satAOI_adapters.dxf_read.meaning import Seen
-from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.plans import rough_lines
 from satAOI_adapters.dxf_read.shapes import GeometryArray
 from satAOI_adapters.layers import KINDS, Meaning, Verdict
@@ -41,20 +39,18 @@ class Outline:
     """Linework of one layer that encloses what stands on the floor.
 
     Attributes:
-        drawn: The entities, with what they draw in drawing units.
-        lines: The same roughly, in millimetres.
+        drawn: The entities along its rim, with what they draw in drawing units.
         region: What they enclose.
         share: Share of what is known to stand on the floor that lies in it.
         is_faces: Whether it is drawn as the two faces of walls.
-        is_frame: Whether it is a rectangle with something joined to it, as a title block.
+        is_sheet: Whether it is a rectangle with something joined to it, as a title block.
     """
 
     drawn: Sequence[tuple[Seen, Feature]]
-    lines: GeometryArray
     region: Region
     share: float
     is_faces: bool
-    is_frame: bool
+    is_sheet: bool
 
     @property
     def layer(self) -> str:
@@ -62,20 +58,9 @@ class Outline:
         return self.drawn[0][0].placed.layer
 
     @property
-    def rank(self) -> tuple[bool, float, str]:
-        """The likelier to be that of the building, the higher."""
-        return self.is_faces, self.region.area, self.layer
-
-    @property
-    def at_rim(self) -> list[Seen]:
-        """The entities along the rim, and what is joined to them."""
-        reach = self.region.boundary.buffer(WALL_MM)
-        shapely.prepare(reach)
-        tree = shapely.STRtree(self.lines)
-        pairs = tree.query(self.lines, predicate="dwithin", distance=CLOSE_GAPS_MM).T
-        group = linked(pairs, len(self.lines))
-        is_at = np.isin(group, group[shapely.covers(reach, self.lines)])
-        return [self.drawn[k][0] for k in np.flatnonzero(is_at).tolist()]
+    def rank(self) -> tuple[bool, bool, float, str]:
+        """The likelier to bound the floor, the less; in doubt the smallest does."""
+        return self.is_sheet, not self.is_faces, self.region.area, self.layer
 
     def said(self) -> str:
         """Its layer and size."""
@@ -94,23 +79,21 @@ def with_boundary(
     meanings = {entity.verdict.meaning for entity, _ in near}
     if meanings & BOUNDING or not meanings & set(KINDS):
         return list(near), ()
-    outlines = sorted(_outlines(near, mm_per_unit), key=lambda o: o.rank, reverse=True)
+    outlines = sorted(_outlines(near, mm_per_unit), key=lambda outline: outline.rank)
     if not outlines:
         return list(near), ()
-    chosen = next((outline for outline in outlines if not outline.is_frame), None)
-    if chosen is None:
+    if outlines[0].is_sheet:
         return list(near), (_not_used(outlines, mm_per_unit),)
-    others = [outline for outline in outlines if outline is not chosen]
-    walls = {id(entity) for entity in chosen.at_rim}
+    walls = {id(entity) for entity, _ in outlines[0].drawn}
     as_wall = Verdict(Meaning.WALL)
     return (
         [(replace(e, verdict=as_wall) if id(e) in walls else e, f) for e, f in near],
-        (_used(chosen, others, mm_per_unit),),
+        (_used(outlines, mm_per_unit),),
     )
 
 
 def _outlines(near: Sequence[tuple[Seen, Feature]], mm_per_unit: float) -> Iterator[Outline]:
-    """The linework of nameless layers, layer by layer, that encloses what stands on the floor."""
+    """The outlines on nameless layers, layer by layer, that hold what stands on the floor."""
     known = _in_mm((f for e, f in near if e.verdict.meaning in KINDS), near, mm_per_unit)
     spots = shapely.centroid(known)
     dashed = dashed_among([entity for entity, _ in near])
@@ -120,15 +103,38 @@ def _outlines(near: Sequence[tuple[Seen, Feature]], mm_per_unit: float) -> Itera
         if entity.verdict.meaning is None and is_line:
             by_layer[entity.placed.layer].append((entity, feature))
     for drawn in by_layer.values():
-        features = [feature for _, feature in drawn]
-        lines = _in_mm(features, near, mm_per_unit)
-        if not _may_hold(lines, spots):
-            continue
-        region = enclosed(list(lines), with_gates=True).region
-        share = float(shapely.covers(region, spots).mean())
-        if share >= MOST:
-            is_faces = look_like_walls(features, mm_per_unit)
-            yield Outline(drawn, lines, region, share, is_faces, is_sheet(lines))
+        lines = _in_mm((feature for _, feature in drawn), near, mm_per_unit)
+        yield from _of_layer(drawn, lines, spots, mm_per_unit)
+
+
+def _of_layer(
+    drawn: Sequence[tuple[Seen, Feature]],
+    lines: GeometryArray,
+    spots: GeometryArray,
+    mm_per_unit: float,
+) -> Iterator[Outline]:
+    """The outlines on one layer, from the outermost to the innermost.
+
+    Args:
+        drawn: The entities, with what they draw in drawing units.
+        lines: The same roughly, in millimetres.
+        spots: The middles of what stands on the floor.
+        mm_per_unit: Millimetres in a drawing unit.
+    """
+    while lines.size and _may_hold(lines, spots):
+        reach = enclosed(list(lines), with_gates=True).region.boundary.buffer(WALL_MM)
+        shapely.prepare(reach)
+        is_rim = shapely.covers(reach, lines)
+        # axes cross what they enclose, and stick out
+        region = enclosed(list(lines[is_rim]), with_gates=True).region
+        share = float(shapely.dwithin(region, spots, WALL_MM).mean())
+        if share < MOST:
+            return
+        rim = [drawn[k] for k in np.flatnonzero(is_rim).tolist()]
+        is_faces = look_like_walls([feature for _, feature in rim], mm_per_unit)
+        yield Outline(rim, region, share, is_faces, is_sheet(lines))
+        drawn = [drawn[k] for k in np.flatnonzero(~is_rim).tolist()]
+        lines = lines[~is_rim]
 
 
 def _in_mm(
@@ -147,11 +153,11 @@ def _may_hold(lines: GeometryArray, spots: GeometryArray) -> bool:
     if max(right - left, top - bottom) > EXTENT.most_mm:
         return False
     hull = shapely.convex_hull(shapely.geometrycollections(lines))
-    shapely.prepare(hull)
-    return bool(shapely.covers(hull, spots).mean() >= MOST)
+    return bool(shapely.dwithin(hull, spots, WALL_MM).mean() >= MOST)
 
 
-def _used(chosen: Outline, others: Sequence[Outline], mm_per_unit: float) -> Finding:
+def _used(outlines: Sequence[Outline], mm_per_unit: float) -> Finding:
+    chosen, *others = outlines
     more = f"; so do {', '.join(outline.said() for outline in others)}" if others else ""
     return _finding(
         "outline-as-walls",
@@ -165,9 +171,9 @@ def _used(chosen: Outline, others: Sequence[Outline], mm_per_unit: float) -> Fin
 def _not_used(outlines: Sequence[Outline], mm_per_unit: float) -> Finding:
     return _finding(
         "outline-not-used",
-        f"{' and '.join(outline.said() for outline in outlines)} enclose most of what is known to "
-        "stand on the floor, but are taken for frames of the sheet, since something is joined to "
-        "each as a title block",
+        f"the linework on layer {' and '.join(outline.said() for outline in outlines)} encloses "
+        "most of what is known to stand on the floor, but is taken for the frame of the sheet, "
+        "since something is joined to it as a title block",
         outlines[0],
         mm_per_unit,
     )
