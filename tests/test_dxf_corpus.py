@@ -142,7 +142,7 @@ NO_PLAN = {
     "real_empty_modelspace": (EmptyPlanError, "is empty"),
     "real_invalid_group_code_unreadable": (UnreadableError, "damaged"),
     "real_layout_broken_links_empty_model": (EmptyPlanError, "is empty"),
-    "real_not_a_plan_tree_of_splines": (EmptyPlanError, "enclose nothing"),
+    "real_not_a_plan_tree_of_splines": (UnitError, "0.237 × 0.242 m"),
     "real_r12_empty_handles": (UnitError, "--units"),
     "real_r12_house_elevation_stray_endsec": (UnreadableError, "cut off"),
     "real_r12_nameless_table_entry": (UnitError, "--units"),

@@ -36,8 +36,8 @@ LEAD: Final = 0.2
 SLIM: Final = 0.25
 """A wall is thinner than this share of its length."""
 
-LEAST_WEIGHT: Final = 0.5
-"""Signs that weigh less than this together tell no unit: a size alone is no evidence."""
+LEAST_WEIGHT: Final = 0.6
+"""Signs that weigh less than this together tell no unit: sizes or texts alone are no evidence."""
 
 OFTEN: Final = 20
 """A sign seen so many times needs no second one to contradict a header."""
@@ -227,9 +227,7 @@ def _shorter_side(path: Path) -> float:
     return float(np.ptp(corners, axis=0).min())
 
 
-def _wall_thicknesses(
-    features: Sequence[tuple[Meaning | None, Feature]],
-) -> FloatArray:
+def _wall_thicknesses(features: Sequence[tuple[Meaning | None, Feature]]) -> FloatArray:
     """For each line of a wall its own width, or the distance to the nearest one that runs beside.
 
     Lines with a width are the middles of walls: what runs beside them is another wall.
@@ -239,9 +237,9 @@ def _wall_thicknesses(
     widths = [
         wall.width_mm
         for wall in walls
-        if wall.width_mm
         for path in wall.paths
         for piece in path.pieces
+        if 0 < wall.width_mm < SLIM * math.dist(piece.start, piece.end)
     ]
     return np.concatenate((distances[np.isfinite(distances)], np.array(widths)))
 

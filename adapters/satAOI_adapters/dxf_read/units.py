@@ -88,7 +88,8 @@ def unit_of(
         return Known(Unit(guess.units[0], "estimate"), (_estimated(guess, size),))
     tells = "nothing in it tells" if guess is None else _told(guess, size)
     raise UnitError(
-        f"no unit of length in '{name}' ($INSUNITS is {code}), and {tells}; {_choices(size)}"
+        f"no unit of length in '{name}' ($INSUNITS is {code}), and {tells}; the drawing measures "
+        f"{size[0]:.6g} × {size[1]:.6g} units: give {_offers(size)}"
     )
 
 
@@ -111,7 +112,7 @@ def hold_size(unit: Unit, size_mm: tuple[float, float] | None, name: str) -> Non
     size = (size_mm[0] / unit.mm, size_mm[1] / unit.mm)
     raise UnitError(
         f"'{name}' is read in {unit.name}, which makes the plan in it {in_metres(size, unit.name)}"
-        f"; {_choices(size)}"
+        f"; give {_offers(size)}"
     )
 
 
@@ -133,7 +134,7 @@ def _doubts(
     return (
         Finding(
             "unit-doubtful",
-            f"the drawing {says}, {but}; it is read in {header}",
+            f"the drawing {says}, {but}; the header is believed",
             f"give {options} if the header is wrong, --units {header} if it is right",
         ),
     )
@@ -153,10 +154,9 @@ def _estimated(guess: Estimate, size: tuple[float, float]) -> Finding:
     )
 
 
-def _choices(size: tuple[float, float]) -> str:
-    """What to type, with the size that each usual unit gives the drawing."""
-    offers = ", ".join(f"--units {unit} for {in_metres(size, unit)}" for unit in USUAL)
-    return f"the drawing measures {size[0]:.6g} × {size[1]:.6g} units: give {offers}"
+def _offers(size: tuple[float, float]) -> str:
+    """What to type, with the size that each usual unit makes of one in drawing units."""
+    return ", ".join(f"--units {unit} for {in_metres(size, unit)}" for unit in USUAL)
 
 
 def in_metres(size: tuple[float, float], unit: str) -> str:
