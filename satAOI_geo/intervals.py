@@ -178,7 +178,7 @@ def _block(
             this row and the next, beyond what it does on the two.
         rows: Which rows are asked for; all where steps are looked for.
         nearest: Room for two numbers a row, see `_find_nearest`.
-        watch: Whether to look for steps up that a piece bars between their ends.
+        watch: Whether to look for steps that a piece bars between their ends.
         barred: Room for steps that are barred, three numbers each, see `Engine.block`.
 
     Returns:
@@ -217,7 +217,8 @@ def _block(
             n_barred = _bar_steps_up(
                 barred, n_barred, ends, lowest - first_row, highest - first_row, n_columns
             )
-    return n_barred
+    # of those to the right some come along anyway
+    return n_barred if watch else 0
 
 
 @helper
