@@ -126,14 +126,14 @@ VOCABULARY = {
         Meaning.DOOR: "Doorway; doors-internal",
         Meaning.COLUMN: "Stanchions; STEEL COLUMN",
         Meaning.HOLE: "MANHOLES; Floor drain; Gully; Catch basin; HVAC SHAFT; ELEC PIT",
-        Meaning.EQUIPMENT: "FOUNDATION; PUMP FOUNDATION; STEPS; Staircase",
+        Meaning.EQUIPMENT: "PUMP FOUNDATION; EQUIPMENT FOUNDATION; STEPS; Staircase",
         Meaning.IGNORE: "FF&E; smoke detectors; cable tray; GRIDLINES; Callouts; skylight",
     },
     "German": {
         Meaning.WALL: "AW; KS-Mauerwerk; Leichtbauwand neu; Wandkonstruktion; Poche",
         Meaning.DOOR: "Innentüren; Aussentueren; Schiebetür",
         Meaning.HOLE: "Aufzugsschacht; Elektroschacht; Kabelkanal Elektro",
-        Meaning.EQUIPMENT: "Fundamente; Behälter; Treppenhaus",
+        Meaning.EQUIPMENT: "Maschinenfundamente; Behälter; Treppenhaus",
         Meaning.IGNORE: "Beleuchtung; Vermaßung; Steckdosen; Heizkörper; Raumnamen; Dachüberstand",
         Meaning.ROOM: "Nutzflächen",
     },
@@ -141,7 +141,7 @@ VOCABULARY = {
         Meaning.WALL: "PLACO; Doublage; CLOISONNEMENT; Parpaings; Murs côté rue",
         Meaning.WINDOW: "Baies; baie vitrée; Châssis",
         Meaning.HOLE: "Réservations plomberie; Avaloir",
-        Meaning.EQUIPMENT: "Fondations; Massifs; Cuves; Garde-corps",
+        Meaning.EQUIPMENT: "Massifs; Cuves; Garde-corps",
         Meaning.IGNORE: "Meubles; Éclairage; Plomberie; CHAUFFAGE; Cote; Étiquettes",
     },
     "Italian": {
@@ -156,7 +156,7 @@ VOCABULARY = {
         Meaning.WINDOW: "VENTANERÍA; Cancelería; VANOS",
         Meaning.COLUMN: "EST_CASTILLOS",
         Meaning.HOLE: "Registros; Hueco instalaciones",
-        Meaning.EQUIPMENT: "BASES; Tanques; Cimentación",
+        Meaning.EQUIPMENT: "BASES; Tanques; Maquinaria",
         Meaning.IGNORE: "ARQ_AMUEBLADO; Iluminación; ACOTADO; ALERO; Etiquetas",
         Meaning.ROOM: "Superficies; Habitaciones",
     },
@@ -172,7 +172,7 @@ VOCABULARY = {
         Meaning.WINDOW: "Esquadrias; Caixilharia; Vãos",
         Meaning.COLUMN: "Colunas",
         Meaning.HOLE: "Vazios; Shaft elétrico; Caixa de esgoto",
-        Meaning.EQUIPMENT: "Tanque; FUNDAÇÃO; Degraus",
+        Meaning.EQUIPMENT: "Tanque; Equipamentos; Degraus",
         Meaning.IGNORE: "MÓVEIS; mobília; louça; Iluminação; Projeção; TELHADO",
     },
     "Polish": {
@@ -189,7 +189,7 @@ VOCABULARY = {
         Meaning.WALL: "priečky; Příčka; zdivo",
         Meaning.WINDOW: "okenní výplně",
         Meaning.HOLE: "šachty; Otvory; Vpusti",
-        Meaning.EQUIPMENT: "schodiště; schodisko; výtah; Základy; Zábradlí",
+        Meaning.EQUIPMENT: "schodiště; schodisko; výtah; Nádrže; Zábradlí",
         Meaning.IGNORE: "Zařizovací předměty; Osvětlení; kóty; popisy; Šrafura",
         Meaning.ROOM: "místnosti",
     },
@@ -206,7 +206,7 @@ VOCABULARY = {
         Meaning.WALL: "zidărie; Perete; Compartimentări",
         Meaning.WINDOW: "ferestre; Tâmplărie",
         Meaning.DOOR: "uși",
-        Meaning.EQUIPMENT: "scări; Fundații; Utilaje",
+        Meaning.EQUIPMENT: "scări; Rezervoare; Utilaje",
         Meaning.IGNORE: "Iluminat; Prize; Hașură",
     },
     "Croatian, Serbian, Slovene": {
@@ -215,7 +215,7 @@ VOCABULARY = {
         Meaning.DOOR: "Vrata",
         Meaning.COLUMN: "Stubovi; Stebri",
         Meaning.HOLE: "Šahtovi",
-        Meaning.EQUIPMENT: "stepenice; stubište; Dizalo; Temelji; Stroj",
+        Meaning.EQUIPMENT: "stepenice; stubište; Dizalo; Spremnik; Stroj",
         Meaning.IGNORE: "namještaj; Rasvjeta; kote; natpisi; osi",
         Meaning.ROOM: "Prostorije",
     },
@@ -232,7 +232,7 @@ VOCABULARY = {
         Meaning.WALL: "Кладка; Ограждающие конструкции; Контур стен; Цегла",
         Meaning.WINDOW: "Витражи; Оконные блоки; Вікна; Оконные проёмы",
         Meaning.DOOR: "Проемы; Дверные проёмы",
-        Meaning.HOLE: "Вентшахты; Колодцы; Проемы в перекрытии",
+        Meaning.HOLE: "Вентшахты; Люки; Проемы в перекрытии",
         Meaning.EQUIPMENT: "Лестничная клетка; Резервуары; Постамент; Сходи",
         Meaning.IGNORE: "Сантех оборудование; Освещение; Отопление; Розетки; Тексты; Карниз",
         Meaning.ROOM: "Площади",
@@ -250,7 +250,7 @@ VOCABULARY = {
         Meaning.DOOR: "Innerdörrar; Ytterdør; Døre",
         Meaning.COLUMN: "Søjler; Soejler; Pelar",
         Meaning.HOLE: "Golvbrunn; Gulvafløb; Sluk; Sjakt",
-        Meaning.EQUIPMENT: "Trapper; Trappa; Hiss; Maskiner; Fundament; Räcke",
+        Meaning.EQUIPMENT: "Trapper; Trappa; Hiss; Maskiner; Räcke",
         Meaning.IGNORE: "Inredning; Belysning; MÅL; Måttsättning; Tekster; MODULLINIER; VVS",
         Meaning.ROOM: "Rum; Utrymmen",
     },
@@ -268,7 +268,7 @@ VOCABULARY = {
         Meaning.WINDOW: "kozijnen; Deuren en ramen",
         Meaning.DOOR: "binnendeuren",
         Meaning.HOLE: "Vloerputten; Schachten; Vides",
-        Meaning.EQUIPMENT: "Trappenhuis; Liften; Fundering; Leuningen",
+        Meaning.EQUIPMENT: "Trappenhuis; Liften; Leuningen",
         Meaning.IGNORE: "inrichting; meubels; Sanitair; Verlichting; Maatlijnen; Teksten",
         Meaning.ROOM: "Ruimten",
     },
@@ -328,7 +328,10 @@ def test_walls_are_walls_whatever_they_are_named_after(name: str) -> None:
     assert layer_table().of_layer(name).meaning is Meaning.WALL
 
 
-@pytest.mark.parametrize("name", ["Corte A-A", "Schnitt", "канализация", "FENCE", "USA", "Cuisine"])
+@pytest.mark.parametrize(
+    "name",
+    ["Corte A-A", "Schnitt", "канализация", "FENCE", "USA", "Cuisine", "FOUNDATION", "Fundamente"],
+)
 def test_words_that_may_be_harmless_or_stop_the_robot_say_nothing(name: str) -> None:
     assert layer_table().of_layer(name).meaning is None
 

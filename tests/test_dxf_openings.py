@@ -279,3 +279,45 @@ def test_two_leaves_over_a_wall_are_one_door(tmp_path: Path) -> None:
     assert in_drawing(plan).equals(WALL.difference(box(4000, 5000, 5800, 5200)))
     (said,) = [finding for finding in plan.findings if finding.code == "door-over-wall"]
     assert "1800 mm wide" in said.message
+
+
+def test_doors_on_a_layer_that_is_left_out_open_nothing_and_are_said_once(tmp_path: Path) -> None:
+    document = drawing()
+    outline(document.modelspace())
+    swing(document.modelspace(), "Furniture")
+    on = {"layer": "Furniture"}
+    document.modelspace().add_arc((7000, 5000), 900, 270, 360, dxfattribs=on)
+    document.modelspace().add_line((7000, 5000), (7000, 4100), dxfattribs=on)
+    plan = plan_of(document, tmp_path)
+    assert in_drawing(plan).equals(WALL)
+    (said,) = [finding for finding in plan.findings if finding.code == "door-left-out"]
+    assert said.layer == "Furniture"
+    assert said.message.startswith("2 doors")
+    assert said.at_mm == (4000.0, 5200.0)
+
+
+def test_door_on_a_layer_that_is_left_out_in_an_opening_needs_no_word(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 0, 5000, 4000, 5200, layer="WALL")
+    rectangle(document.modelspace(), 4900, 5000, 10_000, 5200, layer="WALL")
+    swing(document.modelspace(), "Furniture")
+    assert "door-left-out" not in codes(plan_of(document, tmp_path))
+
+
+def test_doors_of_a_cabinet_at_a_wall_need_no_word(tmp_path: Path) -> None:
+    document = drawing()
+    outline(document.modelspace())
+    rectangle(document.modelspace(), 4000, 5200, 4900, 5800, layer="Furniture")
+    on = {"layer": "Furniture"}
+    document.modelspace().add_arc((4000, 5800), 450, 0, 90, dxfattribs=on)
+    document.modelspace().add_line((4000, 5800), (4000, 6250), dxfattribs=on)
+    assert "door-left-out" not in codes(plan_of(document, tmp_path))
+
+
+def test_doors_on_a_layer_that_the_user_leaves_out_need_no_word(tmp_path: Path) -> None:
+    layers = tmp_path / "layers.toml"
+    layers.write_text('[layers]\nignore = ["Furniture"]\n', encoding="utf-8")
+    document = drawing()
+    outline(document.modelspace())
+    swing(document.modelspace(), "Furniture")
+    assert "door-left-out" not in codes(plan_of(document, tmp_path, layers=layers))

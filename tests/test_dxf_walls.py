@@ -718,22 +718,26 @@ def test_door_whose_arc_is_not_about_its_hinge_is_a_door_all_the_same(
 
 
 @pytest.mark.parametrize("side", ["spline", "spline of degree 3", "three in line"])
-def test_straight_sides_are_no_swings_however_they_are_drawn(side: str, tmp_path: Path) -> None:
-    # Rhino and Inkscape write each straight line as a spline
-    corners = [(2000, 2200), (2900, 2200), (2900, 2400), (2000, 2400), (2000, 2200)]
+def test_straight_ends_of_walls_are_no_swings_however_they_are_drawn(
+    side: str, tmp_path: Path
+) -> None:
+    # Rhino and Inkscape write straight lines as splines
+    document = drawing()
+    space = document.modelspace()
     on = {"layer": "WALL"}
-    as_lines, document = drawing(), drawing()
-    for start, end in pairwise(map(Vec3, corners)):
-        as_lines.modelspace().add_line(start, end, dxfattribs=on)
+    for y in (2200, 2400):
+        space.add_line((2000, y), (2900, y), dxfattribs=on)
+    for x in (2000, 2900):
+        start, end = Vec3(x, 2200), Vec3(x, 2400)
         spots = [start.lerp(end, share) for share in (0, 1 / 3, 2 / 3, 1)]
         if side == "spline":
-            document.modelspace().add_open_spline([start, end], degree=1, dxfattribs=on)
+            space.add_open_spline([start, end], degree=1, dxfattribs=on)
         elif side == "spline of degree 3":
-            document.modelspace().add_open_spline(spots, dxfattribs=on)
+            space.add_open_spline(spots, dxfattribs=on)
         else:
-            document.modelspace().add_lwpolyline([spot.vec2 for spot in spots], dxfattribs=on)
+            space.add_lwpolyline([spot.vec2 for spot in spots], dxfattribs=on)
     plan = plan_of(document, tmp_path)
-    assert plan.obstacle_region().equals(plan_of(as_lines, tmp_path).obstacle_region())
+    assert plan.obstacle_region().symmetric_difference(box(2000, 2200, 2900, 2400)).area < 100
     assert "door-among-walls" not in codes(plan)
 
 

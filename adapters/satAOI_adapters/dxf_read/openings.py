@@ -268,6 +268,17 @@ def shut(door: Swing) -> list[Span]:
     return [Span(door.hinge, tip) for tip in door.shut_at]
 
 
+def over_whole_walls(doors: Sequence[Swing], walls: Sequence[BaseGeometry]) -> list[Span]:
+    """Where doors are shut that lie over a wall without an opening, copies aside."""
+    tree = shapely.STRtree(walls)
+    found: list[Span] = []
+    for door in doors:
+        crossings = [_crossing(span, tree) for span in shut(door)]
+        if not any(_is_free(crossing, tree) for crossing in crossings):
+            found.extend(span for span, _ in _over(crossings)[:1])
+    return _whole(_once(found))
+
+
 def as_one(spans: Sequence[Span]) -> Iterator[Span]:
     """From hinge to hinge of two leaves whose tips meet."""
     tips = shapely.STRtree([Spot(span.end) for span in spans])

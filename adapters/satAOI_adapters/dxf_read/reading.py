@@ -28,6 +28,7 @@ from satAOI_adapters.dxf_read.fills import fills_alone
 from satAOI_adapters.dxf_read.floor import Floor, floor_of
 from satAOI_adapters.dxf_read.floor_layers import outer_edges
 from satAOI_adapters.dxf_read.glazing import between_rooms, with_marked_doors
+from satAOI_adapters.dxf_read.left_out_doors import left_out_doors
 from satAOI_adapters.dxf_read.marks import marks_of
 from satAOI_adapters.dxf_read.nameless import with_nameless_walls
 from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
@@ -117,6 +118,7 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
             *choice,
             *of_nameless,
             *standing.findings,
+            *left_out_doors(drawing.seen, standing.obstacles, terms),
             *of_marks,
             *between_rooms(drawn, floor.region, standing.obstacles, frame),
             *floor.findings,

@@ -37,6 +37,9 @@ TIP_SLACK_MM: Final = 100.0
 LEAST_TURN_MM: Final = 120.0
 """And its ends are farther from each other: the round end of a wall is narrower."""
 
+LEAST_BULGE: Final = 0.05
+"""And it runs this far off the chord between them, as a share of that: a turn by 23°."""
+
 WIDEST_RAD: Final = math.radians(190)
 """Doors are drawn open by up to half a turn."""
 
@@ -240,10 +243,10 @@ def _about_centre(bow: _Bow, known: _Lines) -> Swing | None:
 
 def _by_hand(bow: _Bow, known: _Lines) -> Swing | None:
     """The door of an arc that begins at the tip of a leaf and keeps about its length away."""
+    if not _spans_a_turn(bow.points[0], bow.points[-1]) or not _bulges(bow.points):
+        return None
     for points in (bow.points, bow.points[::-1]):
         tip, shut_at = points[0], points[-1]
-        if not _spans_a_turn(tip, shut_at):
-            continue
         leaves = [
             (line, hinge)
             for line, _, hinge in known.from_near(tip, TIP_SLACK_MM)
@@ -261,6 +264,15 @@ def _by_hand(bow: _Bow, known: _Lines) -> Swing | None:
 def _spans_a_turn(start: Point, end: Point) -> bool:
     """Whether the ends of what may be a door's arc are as far from each other as such ends are."""
     return LEAST_TURN_MM <= math.dist(start, end) <= 2 * LEAF_MM
+
+
+def _bulges(points: Sequence[Point]) -> bool:
+    """Whether a bow is no straight line, as splines and polylines also draw the faces of walls."""
+    (x, y), (end_x, end_y) = points[0], points[-1]
+    chord_x, chord_y = end_x - x, end_y - y
+    # each the distance from the chord times its length
+    off_mm2 = max(abs(chord_x * (at_y - y) - chord_y * (at_x - x)) for at_x, at_y in points)
+    return off_mm2 >= LEAST_BULGE * (chord_x**2 + chord_y**2)
 
 
 def _keeps_away(points: Sequence[Point], hinge: Point, leaf_mm: float) -> bool:
