@@ -362,3 +362,22 @@ def test_walls_told_by_their_look_may_have_a_frame_around_them(tmp_path: Path) -
     plan = plan_of(document, tmp_path)
     assert {"walls-by-look", "frame"} <= set(codes(plan))
     assert plan.floor.area == 6400 * 4400
+
+
+@pytest.mark.parametrize("core", [False, True])
+@pytest.mark.parametrize("with_door", [False, True])
+def test_frame_is_told_from_the_walls_of_a_rectangular_building_in_it(
+    *, with_door: bool, core: bool, tmp_path: Path
+) -> None:
+    document = flat_on_layer_0(with_door=with_door)
+    space = document.modelspace()
+    # the flat is a core in a building of two outlines, or joined to it by a wall
+    rectangle(space, -3000, -3000, 9000, 7000, layer="0")
+    rectangle(space, -2800, -2800, 8800, 6800, layer="0")
+    if not core:
+        space.add_line((6200, 2000), (8800, 2000), dxfattribs={"layer": "0"})
+        space.add_line((6200, 2100), (8800, 2100), dxfattribs={"layer": "0"})
+    rectangle_of_lines(space, (-6000, -6000, 12_000, 9000))
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == 12_000 * 10_000
+    assert "frame" in codes(plan)

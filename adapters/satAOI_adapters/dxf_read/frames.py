@@ -81,17 +81,6 @@ class Sheet:
     is_frame: BoolArray
     group: IntArray
 
-    @classmethod
-    def of(cls, drawn: Sequence[tuple[Seen, Feature]], mm_per_unit: float) -> "Sheet":
-        """The sheet that what is drawn of plans makes up."""
-        lines = _upright(rough_lines([feature for _, feature in drawn]), mm_per_unit)
-        frames, is_frame = _frames(lines)
-        if not frames:
-            return cls(drawn, mm_per_unit, lines, frames, is_frame, np.arange(len(lines)))
-        tree = shapely.STRtree(lines)
-        pairs = tree.query(lines, predicate="dwithin", distance=CLOSE_GAPS_MM).T
-        return cls(drawn, mm_per_unit, lines, frames, is_frame, linked(pairs, len(lines)))
-
     @property
     def is_out(self) -> BoolArray:
         """Which lines go with the frames: what is joined to one, directly or through others."""
@@ -99,12 +88,10 @@ class Sheet:
 
     @property
     def is_apart(self) -> bool:
-        """Whether there are frames, something in them, and no wall near one."""
+        """Whether there is something in the frames, and no wall near one."""
         rest = self.lines[~self.is_out]
-        if not self.frames or not rest.size:
-            return False
         frames = shapely.union_all(self.lines[self.is_frame])
-        return bool((shapely.distance(frames, rest) > WALL_MM).all())
+        return bool(rest.size and (shapely.distance(frames, rest) > WALL_MM).all())
 
     @property
     def rest(self) -> list[Feature]:
@@ -135,19 +122,37 @@ def without_frames(
         mm_per_unit: Millimetres in a drawing unit.
     """
     drawn = [pair for pair in near if pair[0].verdict.meaning in IN_A_PLAN]
-    sheet = Sheet.of(drawn, mm_per_unit) if drawn else None
-    if sheet is None or not sheet.is_apart:
-        return list(near), ()
-    has_doors = any(n_swings(feature) for _, feature in drawn)
-    finding = (_by_doors if has_doors else _by_rooms)(sheet)
-    if finding is None or finding.code != FRAME:
-        return list(near), () if finding is None else (finding,)
-    left_out = {id(entity) for entity in sheet.left_out}
-    ignored = Verdict(Meaning.IGNORE)
-    return (
-        [(replace(e, verdict=ignored) if id(e) in left_out else e, f) for e, f in near],
-        (finding,),
-    )
+    judge = _by_doors if any(n_swings(feature) for _, feature in drawn) else _by_rooms
+    doubt: tuple[Finding, ...] = ()
+    for sheet in _sheets(drawn, mm_per_unit) if drawn else ():
+        if not sheet.is_apart:
+            continue
+        finding = judge(sheet)
+        if finding is not None and finding.code == FRAME:
+            left_out = {id(entity) for entity in sheet.left_out}
+            ignored = Verdict(Meaning.IGNORE)
+            rest = [(replace(e, verdict=ignored) if id(e) in left_out else e, f) for e, f in near]
+            return rest, (finding,)
+        doubt = doubt or (() if finding is None else (finding,))
+        if not _faces_mm(sheet.frames[-2:], WALL_MM):
+            break
+    return list(near), doubt
+
+
+def _sheets(drawn: Sequence[tuple[Seen, Feature]], mm_per_unit: float) -> Iterator[Sheet]:
+    """What is drawn of plans with all the rectangles around it, then with fewer of them.
+
+    The inner ones may be the faces of the building's walls.
+    """
+    lines = _upright(rough_lines([feature for _, feature in drawn]), mm_per_unit)
+    frames, depth = _frames(lines)
+    if not frames:
+        return
+    tree = shapely.STRtree(lines)
+    pairs = tree.query(lines, predicate="dwithin", distance=CLOSE_GAPS_MM).T
+    group = linked(pairs, len(lines))
+    for count in range(len(frames), 0, -1):
+        yield Sheet(drawn, mm_per_unit, lines, frames[:count], depth < count, group)
 
 
 def is_sheet(lines: GeometryArray) -> bool:
@@ -156,7 +161,8 @@ def is_sheet(lines: GeometryArray) -> bool:
     Rectangles as far apart as the faces of walls are none.
     """
     lines = _upright(lines, 1.0)
-    frames, is_frame = _frames(lines)
+    frames, depth = _frames(lines)
+    is_frame = depth < MOST_FRAMES
     if not frames or _faces_mm(frames, WALL_MM):
         return False
     rims = shapely.union_all(lines[is_frame])
@@ -198,20 +204,25 @@ def _upright(drawn: GeometryArray, mm_per_unit: float) -> GeometryArray:
     return np.asarray(shapely.transform(lines, lambda xy: xy @ np.array(((cos, -sin), (sin, cos)))))
 
 
-def _frames(lines: GeometryArray) -> tuple[list[tuple[float, ...]], BoolArray]:
-    """The rectangles around all else, the outermost first, and which lines draw them."""
-    is_frame = np.zeros(len(lines), dtype=bool)
+def _frames(lines: GeometryArray) -> tuple[list[tuple[float, ...]], IntArray]:
+    """The rectangles around all else, the outermost first, and in how many others each line is.
+
+    Lines that draw none of them are in all.
+    """
+    depth = np.full(len(lines), MOST_FRAMES)
     frames: list[tuple[float, ...]] = []
-    while len(frames) < MOST_FRAMES and not is_frame.all():
-        rim = box(*shapely.total_bounds(lines[~is_frame])).exterior
+    is_in = np.ones(len(lines), dtype=bool)
+    while len(frames) < MOST_FRAMES and is_in.any():
+        rim = box(*shapely.total_bounds(lines[is_in])).exterior
         reach = rim.buffer(CLOSE_GAPS_MM)
         shapely.prepare(reach)
-        on_rim = ~is_frame & shapely.covers(reach, lines)
+        on_rim = is_in & shapely.covers(reach, lines)
         if shapely.union_all(lines[on_rim]).length < WHOLE * rim.length:
             break
-        is_frame |= on_rim
+        depth[on_rim] = len(frames)
+        is_in &= ~on_rim
         frames.append(rim.bounds)
-    return frames, is_frame
+    return frames, depth
 
 
 def _faces_mm(frames: Sequence[tuple[float, ...]], widest_mm: float) -> float:
