@@ -469,6 +469,12 @@ def test_own_file_can_take_the_place_of_the_table(tmp_path: Path) -> None:
     assert table.of_layer("A-WALL").meaning is None
 
 
+def test_glob_that_shuts_a_letter_out_fits_names_in_other_scripts(tmp_path: Path) -> None:
+    table = layer_table(own(tmp_path, '[layers]\nwall = ["L?[!ж]"]\n'))
+    assert table.of_layer("L-1").meaning is Meaning.WALL
+    assert table.of_layer("L-ж").meaning is None
+
+
 def test_exception_keeps_a_name_out_of_a_kind(tmp_path: Path) -> None:
     table = layer_table(own(tmp_path, '[layers]\ncolumn = ["K*", "!K9"]\n'))
     assert table.of_layer("K1").meaning is Meaning.COLUMN

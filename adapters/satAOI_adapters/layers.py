@@ -135,12 +135,14 @@ class Patterns:
         names: Place in that order of each that is a name itself.
         words: Of each that is a word, folded.
         globs: Place of each that is a glob, and the glob, folded.
+        plain_globs: Those of them that a name in ASCII can fit.
     """
 
     texts: tuple[str, ...]
     names: Mapping[str, int]
     words: Mapping[str, int]
     globs: tuple[tuple[int, str], ...]
+    plain_globs: tuple[tuple[int, str], ...]
 
     @classmethod
     def of(cls, texts: Iterable[str]) -> "Patterns":
@@ -156,7 +158,9 @@ class Patterns:
                 globs.append((place, _folded(text)))
             else:
                 words.setdefault(_folded(text), place)
-        return cls(texts, names, words, tuple(globs))
+        # [!ж] is the only piece of a glob that fits other letters than its own
+        plain_globs = tuple((i, glob) for i, glob in globs if glob.isascii() or "[" in glob)
+        return cls(texts, names, words, tuple(globs), plain_globs)
 
     def first(self, name: str) -> str | None:
         """The first that fits: a name itself, any word of the name, or a glob the whole name."""
@@ -164,7 +168,9 @@ class Patterns:
         n_patterns = len(self.texts)
         found = [self.words.get(word, n_patterns) for word in (folded, *_words(name))]
         first = min(self.names.get(name, n_patterns), *found)
-        earlier = (place for place, glob in self.globs if place < first and is_like(folded, glob))
+        # most globs are of scripts that most names have no letter of
+        globs = self.plain_globs if folded.isascii() else self.globs
+        earlier = (place for place, glob in globs if place < first and is_like(folded, glob))
         first = next(earlier, first)
         return self.texts[first] if first < n_patterns else None
 
