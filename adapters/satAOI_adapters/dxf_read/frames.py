@@ -37,6 +37,7 @@ from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.plans import n_swings, rough_lines
 from satAOI_adapters.dxf_read.shapes import GeometryArray
 from satAOI_adapters.layers import KINDS, Certainty, Meaning, Verdict
+from satAOI_adapters.wording import counted
 from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray
 
 IN_A_PLAN: Final = frozenset({*KINDS, Meaning.FLOOR, Meaning.DOOR})
@@ -294,7 +295,7 @@ def _as_frame(sheet: Sheet, areas: str) -> Finding:
     return _finding(
         FRAME,
         "is taken as the frame of the sheet and left out with what is joined to it, "
-        f"{len(sheet.left_out)} entities together{areas}",
+        f"{counted(len(sheet.left_out), 'shape')} together{areas}",
         "draw the floor's outline on a layer FLOOR if it is a wall",
         sheet,
     )
