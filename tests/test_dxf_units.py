@@ -70,6 +70,16 @@ def test_header_that_two_doors_contradict_is_believed_with_a_word(
     assert f"--units {unit}" in doubt.remedy
 
 
+def test_header_is_doubted_also_where_layers_say_nothing(tmp_path: Path) -> None:
+    document = flat("cm", "in")
+    for entity in list(document.modelspace()):
+        entity.dxf.layer = "0"
+        if entity.dxftype() == "TEXT":
+            document.modelspace().delete_entity(entity)
+    plan = plan_of(document, tmp_path)
+    assert {"all-walls", "unit-doubtful"} <= set(codes(plan))
+
+
 def test_header_that_many_doors_contradict_is_refused(tmp_path: Path) -> None:
     document = flat("cm", "in")
     for y in (200, 400):

@@ -175,17 +175,14 @@ def _foremost(scores: Mapping[str, float], units: Iterable[str]) -> tuple[str, .
 
 def _out_of_range(unit: str, known: Known) -> Known:
     """The sorts of length that are mostly out of range in a unit."""
-    return [
-        (sign, lengths)
-        for sign, lengths in known
-        if sign.at_least and _share(sign, lengths, unit) <= 1 - ENOUGH
-    ]
+    return [(sign, lengths) for sign, lengths in known if _share(sign, lengths, unit) <= 1 - ENOUGH]
 
 
 def _rule_out(signs: Known) -> bool:
     """Whether two sorts of length, or one, were seen often enough to rule a unit out."""
-    seen = [sign for sign, lengths in signs if lengths.size >= sign.at_least]
-    return len(seen) > 1 or any(lengths.size >= sign.often for sign, lengths in signs)
+    telling = [(sign, lengths.size) for sign, lengths in signs if sign.at_least]
+    n_seen = sum(count >= sign.at_least for sign, count in telling)
+    return n_seen > 1 or any(count >= sign.often for sign, count in telling)
 
 
 def _share(sign: Sign, lengths: FloatArray, unit: str) -> float:
