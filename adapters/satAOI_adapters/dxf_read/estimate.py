@@ -79,13 +79,14 @@ TEXTS: Final = Sign("text heights", 40, 3000, 0.5, at_least=5)
 DIMENSIONS: Final = Sign("dimensions", 200, 60_000, 0.4, at_least=0)
 EXTENT: Final = Sign("overall size", 3000, 500_000, 0.3, at_least=0)
 
-Known: TypeAlias = Sequence[tuple[Sign, FloatArray]]
-"""Sorts of length and which of them were found, in drawing units."""
+Evidence: TypeAlias = Sequence[tuple[Sign, FloatArray]]
+"""Sorts of length, and the lengths of each in drawing units."""
 
 CUSTOM: Final = 0.7
 """How much feet and inches as the drawing's number format count beside the other signs."""
 
 CUSTOM_NAME: Final = "lengths in feet and inches"
+"""How messages call that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,8 +122,34 @@ def estimate(
         in_feet_and_inches: Whether the drawing writes lengths as feet and inches, which makes its
             unit the inch.
     """
-    explained = list(others)
-    evidence = [
+    evidence = _evidence(features, size, list(others))
+    custom = CUSTOM if in_feet_and_inches else 0.0
+    likely = _likely(_scores(evidence, custom))
+    for_it = [
+        sign
+        for sign, lengths in evidence
+        if any(_share(sign, lengths, unit) >= ENOUGH for unit in likely)
+    ]
+    is_custom = in_feet_and_inches and "in" in likely
+    if sum(sign.weight for sign in for_it) + custom * is_custom < LEAST_WEIGHT:
+        return None
+    names = [*[CUSTOM_NAME] * is_custom, *(sign.name for sign in for_it)]
+    signs = {unit: _out_of_range(unit, evidence) for unit in MM_PER_UNIT if unit not in likely}
+    return Estimate(
+        likely,
+        " and ".join(names),
+        doubted=frozenset(unit for unit in signs if signs[unit]),
+        against=frozenset(unit for unit in signs if _rule_out(signs[unit])),
+    )
+
+
+def _evidence(
+    features: Sequence[tuple[Meaning | None, Feature]],
+    size: tuple[float, float],
+    explained: Sequence[DXFEntity],
+) -> Evidence:
+    """The sorts of length that a drawing holds; arguments as for `estimate`."""
+    found = [
         (DOORS, _quarter_turns(features, of_doors=True)),
         (ARCS, _quarter_turns(features, of_doors=False)),
         (WALLS, _wall_thicknesses(features)),
@@ -131,33 +158,18 @@ def estimate(
         (DIMENSIONS, _attributes(explained, {"DIMENSION": "actual_measurement"})),
         (EXTENT, np.array([max(size)])),
     ]
-    known = [(sign, lengths) for sign, lengths in evidence if lengths.size]
-    custom = CUSTOM if in_feet_and_inches else 0.0
-    total = custom + sum(sign.weight for sign, _ in known)
+    return [(sign, lengths) for sign, lengths in found if lengths.size]
+
+
+def _scores(evidence: Evidence, custom: float) -> dict[str, float]:
+    """Which share of the evidence speaks for each unit."""
+    total = custom + sum(sign.weight for sign, _ in evidence)
     scores = dict.fromkeys((*CANDIDATES, *SELDOM), 0.0)
     scores["in"] += custom / total
-    for sign, lengths in known:
+    for sign, lengths in evidence:
         for unit in scores:
             scores[unit] += sign.weight * _share(sign, lengths, unit) / total
-    likely = _likely(scores)
-    if not likely:
-        return None
-    for_it = [
-        sign
-        for sign, lengths in known
-        if any(_share(sign, lengths, unit) >= ENOUGH for unit in likely)
-    ]
-    is_custom = in_feet_and_inches and "in" in likely
-    if sum(sign.weight for sign in for_it) + CUSTOM * is_custom < LEAST_WEIGHT:
-        return None
-    names = [*[CUSTOM_NAME] * is_custom, *(sign.name for sign in for_it)]
-    out_of_range = {unit: _out_of_range(unit, known) for unit in MM_PER_UNIT if unit not in likely}
-    return Estimate(
-        likely,
-        " and ".join(names),
-        doubted=frozenset(unit for unit, signs in out_of_range.items() if signs),
-        against=frozenset(unit for unit, signs in out_of_range.items() if _rule_out(signs)),
-    )
+    return scores
 
 
 def _likely(scores: Mapping[str, float]) -> tuple[str, ...]:
@@ -173,12 +185,12 @@ def _foremost(scores: Mapping[str, float], units: Iterable[str]) -> tuple[str, .
     return tuple(unit for unit in ordered if best >= ENOUGH and best - scores[unit] < LEAD)
 
 
-def _out_of_range(unit: str, known: Known) -> Known:
+def _out_of_range(unit: str, evidence: Evidence) -> Evidence:
     """The sorts of length that are mostly out of range in a unit."""
-    return [(sign, lengths) for sign, lengths in known if _share(sign, lengths, unit) <= 1 - ENOUGH]
+    return [pair for pair in evidence if _share(*pair, unit) <= 1 - ENOUGH]
 
 
-def _rule_out(signs: Known) -> bool:
+def _rule_out(signs: Evidence) -> bool:
     """Whether two sorts of length, or one, were seen often enough to rule a unit out."""
     telling = [(sign, lengths.size) for sign, lengths in signs if sign.at_least]
     n_seen = sum(count >= sign.at_least for sign, count in telling)
