@@ -37,8 +37,8 @@ TIP_SLACK_MM: Final = 100.0
 LEAST_TURN_MM: Final = 120.0
 """And its ends are farther from each other: the round end of a wall is narrower."""
 
-LEAST_BULGE: Final = 0.05
-"""And it runs this far off the chord between them, as a share of that: a turn by 23°."""
+LEAST_BULGE: Final = 0.5
+"""And it runs off the chord between them by this share of what a circle about the hinge does."""
 
 WIDEST_RAD: Final = math.radians(190)
 """Doors are drawn open by up to half a turn."""
@@ -243,14 +243,17 @@ def _about_centre(bow: _Bow, known: _Lines) -> Swing | None:
 
 def _by_hand(bow: _Bow, known: _Lines) -> Swing | None:
     """The door of an arc that begins at the tip of a leaf and keeps about its length away."""
-    if not _spans_a_turn(bow.points[0], bow.points[-1]) or not _bulges(bow.points):
+    if not _spans_a_turn(bow.points[0], bow.points[-1]):
         return None
+    bulge_mm = _bulge_mm(bow.points)
     for points in (bow.points, bow.points[::-1]):
         tip, shut_at = points[0], points[-1]
         leaves = [
             (line, hinge)
             for line, _, hinge in known.from_near(tip, TIP_SLACK_MM)
-            if line not in bow.pieces and _keeps_away(points, hinge, _length_mm(line))
+            if line not in bow.pieces
+            and _keeps_away(points, hinge, _length_mm(line))
+            and bulge_mm >= LEAST_BULGE * _circle_mm(math.dist(tip, shut_at), _length_mm(line))
         ]
         if leaves:
             sides = [line for line, _ in leaves]
@@ -266,13 +269,17 @@ def _spans_a_turn(start: Point, end: Point) -> bool:
     return LEAST_TURN_MM <= math.dist(start, end) <= 2 * LEAF_MM
 
 
-def _bulges(points: Sequence[Point]) -> bool:
-    """Whether a bow is no straight line, as splines and polylines also draw the faces of walls."""
+def _bulge_mm(points: Sequence[Point]) -> float:
+    """How far a bow is off its chord: not at all if it is a wall's face, drawn as a spline."""
     (x, y), (end_x, end_y) = points[0], points[-1]
-    chord_x, chord_y = end_x - x, end_y - y
-    # each the distance from the chord times its length
-    off_mm2 = max(abs(chord_x * (at_y - y) - chord_y * (at_x - x)) for at_x, at_y in points)
-    return off_mm2 >= LEAST_BULGE * (chord_x**2 + chord_y**2)
+    way_x, way_y = end_x - x, end_y - y
+    off_mm2 = max(abs(way_x * (at_y - y) - way_y * (at_x - x)) for at_x, at_y in points)
+    return off_mm2 / math.hypot(way_x, way_y)
+
+
+def _circle_mm(chord_mm: float, radius_mm: float) -> float:
+    """How far an arc of a circle is off its chord."""
+    return radius_mm - math.sqrt(max(radius_mm**2 - chord_mm**2 / 4, 0.0))
 
 
 def _keeps_away(points: Sequence[Point], hinge: Point, leaf_mm: float) -> bool:
