@@ -381,3 +381,18 @@ def test_frame_is_told_from_the_walls_of_a_rectangular_building_in_it(
     plan = plan_of(document, tmp_path)
     assert plan.floor.area == 12_000 * 10_000
     assert "frame" in codes(plan)
+
+
+def test_rectangle_around_tanks_is_a_wall(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    space = document.modelspace()
+    for distance_mm in (0, 300):
+        bounds = (distance_mm, distance_mm, 30_000 - distance_mm, 18_000 - distance_mm)
+        rectangle_of_lines(space, bounds)
+    for x in (7000, 15_000, 23_000):
+        for radius_mm in (3000, 2800):
+            space.add_circle((x, 9000), radius_mm, dxfattribs={"layer": "0"})
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == 30_000 * 18_000
+    (said,) = [finding for finding in plan.findings if finding.code == "frame-or-wall"]
+    assert "3 closed things without an opening" in said.message

@@ -35,10 +35,10 @@ from satAOI_adapters.dxf_read.lookalikes import look_like_walls
 from satAOI_adapters.dxf_read.meaning import Seen
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.plans import n_swings, rough_lines
-from satAOI_adapters.dxf_read.shapes import GeometryArray
+from satAOI_adapters.dxf_read.shapes import GeometryArray, is_thin
 from satAOI_adapters.layers import KINDS, Certainty, Meaning, Verdict
 from satAOI_adapters.wording import counted
-from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray
+from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray, polygons_in
 
 IN_A_PLAN: Final = frozenset({*KINDS, Meaning.FLOOR, Meaning.DOOR})
 """Meanings of what a plan consists of; its frame is taken for one of these."""
@@ -269,6 +269,9 @@ def _signs_of_a_wall(sheet: Sheet, rooms: BaseGeometry) -> Iterator[str]:
     share = (np.min if faces_mm else np.max)(spans_mm / whole_mm)
     if share < FILLED:
         yield f"what the walls in it enclose spans only {share:.0%} of it"
+    n_solid = _n_solid(sheet, rooms)
+    if n_solid > MARKS:
+        yield f"it holds {n_solid} closed things without an opening, as tanks have none"
     count = _n_things(sheet, rooms)
     if count > MARKS:
         yield f"{count} closed things stand between it and the walls"
@@ -277,6 +280,14 @@ def _signs_of_a_wall(sheet: Sheet, rooms: BaseGeometry) -> Iterator[str]:
 def _spans_mm(bounds_mm: Sequence[float]) -> FloatArray:
     left, bottom, right, top = bounds_mm
     return np.array((right - left, top - bottom))
+
+
+def _n_solid(sheet: Sheet, rooms: BaseGeometry) -> int:
+    """How many things without an opening make up most of what is taken for rooms; 0 if none do."""
+    drawn = shapely.union_all(sheet.lines[~sheet.is_out])
+    closed = polygons_in([shapely.union_all(shapely.polygonize([drawn]))])
+    solid = [part for part in closed if not is_thin(part, WALL_MM)]
+    return len(solid) if shapely.area(solid).sum() > rooms.area / 2 else 0
 
 
 def _n_things(sheet: Sheet, rooms: BaseGeometry) -> int:
