@@ -92,7 +92,7 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
     start_mm, start_findings = _start(drawing, frame, options)
     everything = drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
     chosen_part, choice = _chosen(everything, options, start_mm, frame)
-    hold_size(drawing.unit, _size_mm(chosen_part), drawing.path.name)
+    hold_size(drawing.unit, _size_mm(chosen_part, options, frame), drawing.path.name)
     marks = marks_of(drawing.expansion.placed, frame)
     named, of_marks = with_marked_doors(_with_doors(chosen_part), marks, frame)
     terms = Terms(
@@ -149,12 +149,13 @@ def _chosen(
     return kept, (*findings, *_left_out(n_left_out, "the plan"))
 
 
-def _size_mm(drawn: Drawn) -> tuple[float, float] | None:
-    """Width and height of what layers name as standing in a plan, or as its floor."""
+def _size_mm(drawn: Drawn, options: ReadOptions, frame: Frame) -> tuple[float, float] | None:
+    """Width and height of the region, or of what layers name as standing in a plan or its floor."""
     named = [feature for meaning in (*KINDS, Meaning.FLOOR) for feature in drawn[meaning]]
-    if not named:
+    region_mm = _region_mm(options, frame)
+    if not named and region_mm is None:
         return None
-    left, bottom, right, top = shapely.total_bounds(rough_lines(named))
+    left, bottom, right, top = region_mm or shapely.total_bounds(rough_lines(named))
     return float(right - left), float(top - bottom)
 
 
