@@ -97,7 +97,7 @@ class Estimate:
         units: Keys of `units.MM_PER_UNIT`; more than one where none of them leads.
         reasons: What speaks for these, in words: a plural.
         doubted: Units in which a sort of length is out of range.
-        against: Units that two sorts, or one seen often, rule out.
+        against: Units that two sorts rule out, or one seen often where a unit leads.
     """
 
     units: tuple[str, ...]
@@ -135,11 +135,12 @@ def estimate(
         return None
     names = [*[CUSTOM_NAME] * is_custom, *(sign.name for sign in for_it)]
     signs = {unit: _out_of_range(unit, evidence) for unit in MM_PER_UNIT if unit not in likely}
+    leads = len(likely) == 1
     return Estimate(
         likely,
         " and ".join(names),
         doubted=frozenset(unit for unit in signs if signs[unit]),
-        against=frozenset(unit for unit in signs if _rule_out(signs[unit])),
+        against=frozenset(unit for unit in signs if _rule_out(signs[unit], leads=leads)),
     )
 
 
@@ -190,11 +191,15 @@ def _out_of_range(unit: str, evidence: Evidence) -> Evidence:
     return [pair for pair in evidence if _share(*pair, unit) <= 1 - ENOUGH]
 
 
-def _rule_out(signs: Evidence) -> bool:
-    """Whether two sorts of length, or one, were seen often enough to rule a unit out."""
+def _rule_out(signs: Evidence, *, leads: bool) -> bool:
+    """Whether two sorts of length were seen often enough to rule a unit out.
+
+    One sort, seen more often, is enough where another unit leads: joints of tiles may look like
+    thin walls, and no unit fits them.
+    """
     telling = [(sign, lengths.size) for sign, lengths in signs if sign.at_least]
     n_seen = sum(count >= sign.at_least for sign, count in telling)
-    return n_seen > 1 or any(count >= sign.often for sign, count in telling)
+    return n_seen > 1 or (leads and any(count >= sign.often for sign, count in telling))
 
 
 def _share(sign: Sign, lengths: FloatArray, unit: str) -> float:
