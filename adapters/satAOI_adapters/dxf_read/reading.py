@@ -2,12 +2,10 @@
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
-from typing import Final, TypeVar
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 from ezdxf.entities import Circle as CircleEntity
 from ezdxf.entities import DXFEntity, DXFGraphic, Insert
@@ -16,6 +14,7 @@ from ezdxf.math import Vec3
 from shapely.geometry import LineString, box
 
 from satAOI_adapters.collector import collector_at_rest
+from satAOI_adapters.dxf_read.corner import from_corner, spot
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.dashed import without_dashed
 from satAOI_adapters.dxf_read.doors import (
@@ -34,7 +33,6 @@ from satAOI_adapters.dxf_read.nameless import with_nameless_walls
 from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
 from satAOI_adapters.dxf_read.openings import Still, shut, with_openings
 from satAOI_adapters.dxf_read.options import ReadOptions
-from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
 from satAOI_adapters.dxf_read.plans import Drawn, chosen, clusters, rough_lines, within
 from satAOI_adapters.dxf_read.shapes import middle_line
 from satAOI_adapters.dxf_read.survey import Survey, survey
@@ -48,15 +46,12 @@ from satAOI_adapters.dxf_read.windows import window_findings, windows
 from satAOI_adapters.layers import KINDS, Meaning
 from satAOI_geo.errors import InputError
 from satAOI_geo.plan import (
-    Circle,
     Finding,
-    FloatArray,
     FloorPlan,
     Frame,
     Kind,
     Obstacle,
     Region,
-    Shape,
 )
 
 START_LAYER: Final = "SATAOI-START"
@@ -68,8 +63,6 @@ SOLID_KINDS: Final = (Kind.COLUMN, Kind.HOLE, Kind.EMBEDDED, Kind.EQUIPMENT)
 
 ON_EDGE_MM: Final = 1e-3
 """An obstacle this close to the floor reaches it."""
-
-GeometryT = TypeVar("GeometryT", bound=Region | npt.NDArray[np.object_])
 
 
 def read(path: Path, options: ReadOptions) -> FloorPlan:
@@ -131,7 +124,7 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
         source=drawing.source(),
         start_mm=start_mm,
     )
-    return _from_corner(plan)
+    return from_corner(plan)
 
 
 def _chosen(
@@ -295,10 +288,10 @@ def _start(
         for place in _places(entity)
     ]
     if options.start is not None:
-        return _spot(frame.to_local_mm(options.start)), ()
+        return spot(frame.to_local_mm(options.start)), ()
     if not marks:
         return None, ()
-    start_mm = _spot(frame.to_local_mm(marks[0]))
+    start_mm = spot(frame.to_local_mm(marks[0]))
     if len(marks) == 1:
         return start_mm, ()
     return start_mm, (
@@ -322,50 +315,3 @@ def _places(entity: DXFEntity) -> list[Point]:
     else:
         return []
     return [(Vec3(place).x, Vec3(place).y)]
-
-
-def _from_corner(plan: FloorPlan) -> FloorPlan:
-    """The plan in a frame whose origin is the floor's lower left corner, in whole millimetres."""
-    left_mm, bottom_mm, _, _ = plan.floor.bounds
-    shift_mm = np.floor(np.round((left_mm, bottom_mm), LOCAL_DIGITS))
-    x_mm, y_mm = plan.frame.origin_mm
-    origin_mm = (x_mm + float(shift_mm[0]), y_mm + float(shift_mm[1]))
-    shapes = _moved([obstacle.shape for obstacle in plan.obstacles], shift_mm)
-    return replace(
-        plan,
-        floor=_shifted(plan.floor, shift_mm),
-        obstacles=tuple(
-            replace(obstacle, shape=shape)
-            for obstacle, shape in zip(plan.obstacles, shapes, strict=True)
-        ),
-        frame=replace(plan.frame, origin_mm=origin_mm),
-        start_mm=None if plan.start_mm is None else _spot(np.subtract(plan.start_mm, shift_mm)),
-    )
-
-
-def _moved(shapes: Sequence[Shape], shift_mm: FloatArray) -> list[Shape]:
-    """Shapes with their coordinates taken from another origin, and still to `LOCAL_DIGITS`."""
-    drawn = [shape for shape in shapes if not isinstance(shape, Circle)]
-    moved = iter(_shifted(np.array(drawn, dtype=object), shift_mm))
-    return [
-        _moved_circle(shape, shift_mm) if isinstance(shape, Circle) else next(moved)
-        for shape in shapes
-    ]
-
-
-def _moved_circle(circle: Circle, shift_mm: FloatArray) -> Circle:
-    x_mm, y_mm = _spot(np.subtract((circle.x_mm, circle.y_mm), shift_mm))
-    return replace(circle, x_mm=x_mm, y_mm=y_mm)
-
-
-def _shifted(geometry: GeometryT, shift_mm: FloatArray) -> GeometryT:
-    """A geometry, or each of an array of them, from another origin."""
-    moved: GeometryT = shapely.transform(
-        geometry, lambda points: np.round(points - shift_mm, LOCAL_DIGITS) + 0.0
-    )
-    return moved
-
-
-def _spot(point_mm: FloatArray) -> Point:
-    x_mm, y_mm = np.round(point_mm, LOCAL_DIGITS) + 0.0
-    return float(x_mm), float(y_mm)

@@ -5,9 +5,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Final
 
-import numpy as np
 from ezdxf.document import Drawing
 from shapely.geometry import Polygon
 
@@ -27,6 +26,7 @@ from satAOI_adapters.dxf_read.meaning import LISTED, Seen, verdict_of, with_mean
 from satAOI_adapters.dxf_read.opening import open_drawing
 from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.plans import Drawn
+from satAOI_adapters.dxf_read.strays import Box, without_strays
 from satAOI_adapters.dxf_read.units import Known, Unit, unit_of
 from satAOI_adapters.dxf_read.unread import (
     foreign_fault,
@@ -38,7 +38,7 @@ from satAOI_adapters.dxf_read.unread import (
 from satAOI_adapters.dxf_read.xrefs import xrefs_in
 from satAOI_adapters.layers import Certainty, LayerTable, Meaning, layer_table
 from satAOI_geo.errors import DrawingError, EmptyPlanError, UnitError
-from satAOI_geo.plan import Finding, FloatArray, Frame, Source
+from satAOI_geo.plan import Finding, Frame, Source
 
 FEET_AND_INCHES: Final = (3, 4)
 """$LUNITS of a drawing that writes lengths in feet and inches."""
@@ -48,10 +48,6 @@ OWN_PREFIX: Final = "SATAOI-"
 
 NO_UNIT: Final = 0
 """$INSUNITS of a drawing that does not say."""
-
-
-Box: TypeAlias = tuple[float, float, float, float]
-"""Left, bottom, right, top."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,7 +202,7 @@ def survey(path: Path, options: ReadOptions) -> Survey:
     drawn = [placed for placed in expansion.placed if placed.kind in DRAWN]
     meanings = with_meaning(drawn, table)
     rough, broken = _in_drawing_units(meanings.seen)
-    near, box, middle, strays = _without_strays(rough)
+    near, box, middle, strays = without_strays(rough)
     known = _unit(opened.document, near, box, expansion, option=options.units, name=path.name)
     near, by_look = _looked_at(near, known, is_named=meanings.is_named)
     seen = tuple({id(entity): entity for entity, _ in near}.values())
@@ -309,53 +305,6 @@ def _in_drawing_units(
         else:
             rough.extend((entity, feature) for feature in drawn)
     return rough, broken
-
-
-def _without_strays(
-    rough: Sequence[tuple[Seen, Feature]],
-) -> tuple[list[tuple[Seen, Feature]], Box | None, Point, tuple[Finding, ...]]:
-    """What lies together, its box and its middle, and what is said about the rest.
-
-    Entities farther from the middle than `limits.MAX_COORDINATE` are strays of a slip of the
-    keyboard; kept, they would take the digits that the plan needs.
-    """
-    if not rough:
-        return [], None, (0.0, 0.0), ()
-    boxes = np.array([feature.box() for _, feature in rough])
-    middle = _middle(boxes[:, :2])
-    is_near = np.abs(boxes - np.tile(middle, 2)).max(axis=1) <= limits.MAX_COORDINATE
-    near = [pair for pair, keeps in zip(rough, is_near, strict=True) if keeps]
-    far = [pair for pair, keeps in zip(rough, is_near, strict=True) if not keeps]
-    left, bottom = boxes[is_near, :2].min(axis=0)
-    right, top = boxes[is_near, 2:].max(axis=0)
-    findings = tuple(
-        Finding(
-            "far-away",
-            f"{entity.placed.kind} lies or reaches more than {limits.MAX_COORDINATE:,.0f} units "
-            "from the rest of the drawing and is not read",
-            "delete it if it is a stray",
-            layer=entity.placed.layer,
-            handle=entity.placed.handle,
-        )
-        for entity, _ in far
-    )
-    box = (float(left), float(bottom), float(right), float(top))
-    return near, box, (float(middle[0]), float(middle[1])), findings
-
-
-def _middle(corners: FloatArray) -> FloatArray:
-    """The corner that has most of the others around it, of those in the middle of either axis.
-
-    Between two corners the mean of them would have none around it.
-    """
-    candidates = [
-        np.quantile(corners, 0.5, axis=0, method=method) for method in ("lower", "higher")
-    ]
-    n_near = [
-        (np.abs(corners - candidate).max(axis=1) <= limits.MAX_COORDINATE).sum()
-        for candidate in candidates
-    ]
-    return candidates[int(np.argmax(n_near))]
 
 
 def _empty(name: str, expansion: Expansion) -> EmptyPlanError:
