@@ -476,12 +476,14 @@ def _meet_bulge(
             j += 1
         next_x, next_y = ax[i] + bx[j], ay[i] + by[j]
         dx, dy = next_x - vx, next_y - vy
-        # what is level for rounding is nothing
         if dy > 0.0:
             length = math.sqrt(dx * dx + dy * dy)
             nx, ny = -r * dy / length, r * dx / length
             iy = _arc(vx, vy, r, iy, min(last, vy + ny), low, left)
             iy = _line(vx + nx, vy + ny, dx / dy, iy, min(last, next_y + ny), low, left)
+        elif dx >= 0.0:
+            # level for rounding: only its left end matters
+            continue
         vx, vy = next_x, next_y
     _arc(vx, vy, r, iy, last, low, left)
 

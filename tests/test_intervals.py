@@ -301,6 +301,23 @@ def test_part_touches_an_outline_where_the_distance_is_within_its_radius(
     assert np.array_equal(found[sure], expected[sure])
 
 
+@pytest.mark.parametrize("radius_mm", [0.0, 120.0])
+@pytest.mark.parametrize("rise_mm", [4.9e-16, -4.9e-16, 1e-12])
+@pytest.mark.parametrize("quarters", range(4))
+def test_part_that_is_level_but_for_rounding_is_met_as_a_level_one(
+    quarters: int, rise_mm: float, radius_mm: float
+) -> None:
+    corners_mm = np.array([(100.0, 0.0), (-100.0, rise_mm)])
+    level_mm = np.array([(100.0, 0.0), (-100.0, 0.0)])
+    for _ in range(quarters):
+        corners_mm, level_mm = (
+            np.stack((-c[:, 1], c[:, 0]), axis=1) for c in (corners_mm, level_mm)
+        )
+    outline = Polygon([(0, -300), (200, 0), (0, 300), (90, 0)])
+    found, expected = (blocked(Part(c, radius_mm), outline) for c in (corners_mm, level_mm))
+    assert np.array_equal(found, expected)
+
+
 def ring_of(corners_mm: FloatArray) -> FloatArray:
     """Corners of the convex hull, counter-clockwise, the first not repeated."""
     hull = shapely.convex_hull(shapely.multipoints(corners_mm))
