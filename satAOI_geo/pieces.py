@@ -61,15 +61,14 @@ class Pieces:
         """The pieces of a plan; the outside of the floor reaches out to the margin."""
         outside = polygons_in([plan.outside(margin_mm)])
         shapes: list[Shape] = [*(o.shape for o in plan.obstacles), *outside]
-        rings_mm, radii_mm = [], []
+        rings, radii_mm = [], []
         for shape in shapes:
-            rings_of_shape_mm = list(_rings(shape))
-            rings_mm += rings_of_shape_mm
+            of_shape = list(_rings(shape, lattice))
+            rings += of_shape
             radius_mm = shape.radius_mm if isinstance(shape, Circle) else 0.0
-            radii_mm += [radius_mm] * len(rings_of_shape_mm)
-        origin_mm = np.array(lattice.origin_mm)
-        x, y = ((np.concatenate(rings_mm) - origin_mm) / lattice.step_mm - 0.5).T
-        starts = _starts([len(ring_mm) for ring_mm in rings_mm])
+            radii_mm += [radius_mm] * len(of_shape)
+        x, y = np.concatenate(rings).T
+        starts = _starts([len(ring) for ring in rings])
         bottom = np.minimum.reduceat(y, starts[:-1])
         top = np.maximum.reduceat(y, starts[:-1])
         curves = _curves(*_sides(x, y, starts))
@@ -94,24 +93,32 @@ class Pieces:
         )
 
 
-def _rings(shape: Shape) -> Iterator[FloatArray]:
-    """Corners of monotone polygons whose union is the shape; lines are there and back again."""
+def _rings(shape: Shape, lattice: Lattice) -> Iterator[FloatArray]:
+    """Corners of monotone polygons whose union is the shape, in lattice units.
+
+    Lines are there and back again.
+    """
+
+    def units(points_mm: FloatArray) -> FloatArray:
+        return np.asarray((points_mm - np.array(lattice.origin_mm)) / lattice.step_mm - 0.5)
+
     if isinstance(shape, Circle):
-        yield np.array([(shape.x_mm, shape.y_mm)])
+        yield units(np.array([(shape.x_mm, shape.y_mm)]))
     elif isinstance(shape, LineString):
-        for chain_mm in _rising_chains(np.asarray(shape.coords)[:, :2]):
-            yield np.concatenate((chain_mm, chain_mm[-2:0:-1]))
+        # corners on hardly different levels may be on one once they are in lattice units
+        for chain in _rising_chains(units(np.asarray(shape.coords)[:, :2])):
+            yield np.concatenate((chain, chain[-2:0:-1]))
     else:
-        yield from monotone_pieces(shape)
+        yield from map(units, monotone_pieces(shape))
 
 
-def _rising_chains(line_mm: FloatArray) -> list[FloatArray]:
-    """A line, shape (n, 2), cut where it begins to rise or to fall."""
-    dx_mm, dy_mm = np.diff(line_mm, axis=0).T
-    rises = (dy_mm > 0) | ((dy_mm == 0) & (dx_mm > 0))
+def _rising_chains(line: FloatArray) -> list[FloatArray]:
+    """A line, shape (n, 2), cut where it begins to rise or to fall; level, to go right or left."""
+    dx, dy = np.diff(line, axis=0).T
+    rises = (dy > 0) | ((dy == 0) & (dx > 0))
     turns = np.flatnonzero(rises[1:] != rises[:-1]) + 1
     ends = [0, *turns.tolist(), len(rises)]
-    return [line_mm[begin : end + 1] for begin, end in pairwise(ends)]
+    return [line[begin : end + 1] for begin, end in pairwise(ends)]
 
 
 def _sides(

@@ -318,6 +318,20 @@ def test_part_that_is_level_but_for_rounding_is_met_as_a_level_one(
     assert np.array_equal(found, expected)
 
 
+@pytest.mark.parametrize("rise_mm", [5e-14, 1e-13, -5e-14])
+@pytest.mark.parametrize("shape", [LineString, Polygon])
+def test_side_that_is_level_but_for_rounding_is_met_as_a_level_one(
+    shape: type[LineString] | type[Polygon], rise_mm: float
+) -> None:
+    # 800 mm above the lattice's corner the first of these is none
+    for rest in ([(300.0, 400.0)], [(100.0, 0.0), (150.0, 300.0)]):
+        found, expected = (
+            blocked(replace(POINT, radius_mm=50.0), shape([(500.0, 0.0), (300.0, y_mm), *rest]))
+            for y_mm in (rise_mm, 0.0)
+        )
+        assert np.array_equal(found, expected)
+
+
 def ring_of(corners_mm: FloatArray) -> FloatArray:
     """Corners of the convex hull, counter-clockwise, the first not repeated."""
     hull = shapely.convex_hull(shapely.multipoints(corners_mm))
