@@ -9,7 +9,7 @@ import numpy.typing as npt
 import shapely
 
 from satAOI_adapters.dxf_read.curves import Point
-from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
+from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS, rounded_spot
 from satAOI_geo.plan import Circle, FloatArray, FloorPlan, Region, Shape
 
 GeometryT = TypeVar("GeometryT", bound=Region | npt.NDArray[np.object_])
@@ -22,6 +22,7 @@ def from_corner(plan: FloorPlan) -> FloorPlan:
     x_mm, y_mm = plan.frame.origin_mm
     origin_mm = (x_mm + float(shift_mm[0]), y_mm + float(shift_mm[1]))
     shapes = _moved([obstacle.shape for obstacle in plan.obstacles], shift_mm)
+    start_mm = plan.start_mm and _from(plan.start_mm, shift_mm)
     return replace(
         plan,
         floor=_shifted(plan.floor, shift_mm),
@@ -30,7 +31,7 @@ def from_corner(plan: FloorPlan) -> FloorPlan:
             for obstacle, shape in zip(plan.obstacles, shapes, strict=True)
         ),
         frame=replace(plan.frame, origin_mm=origin_mm),
-        start_mm=None if plan.start_mm is None else spot(np.subtract(plan.start_mm, shift_mm)),
+        start_mm=start_mm,
     )
 
 
@@ -45,7 +46,7 @@ def _moved(shapes: Sequence[Shape], shift_mm: FloatArray) -> list[Shape]:
 
 
 def _moved_circle(circle: Circle, shift_mm: FloatArray) -> Circle:
-    x_mm, y_mm = spot(np.subtract((circle.x_mm, circle.y_mm), shift_mm))
+    x_mm, y_mm = _from((circle.x_mm, circle.y_mm), shift_mm)
     return replace(circle, x_mm=x_mm, y_mm=y_mm)
 
 
@@ -57,7 +58,7 @@ def _shifted(geometry: GeometryT, shift_mm: FloatArray) -> GeometryT:
     return moved
 
 
-def spot(point_mm: FloatArray) -> Point:
-    """A point to `LOCAL_DIGITS`; -0 becomes 0."""
-    x_mm, y_mm = np.round(point_mm, LOCAL_DIGITS) + 0.0
-    return float(x_mm), float(y_mm)
+def _from(point_mm: Point, shift_mm: FloatArray) -> Point:
+    """A point from another origin."""
+    x_mm, y_mm = np.subtract(point_mm, shift_mm).tolist()
+    return rounded_spot(x_mm, y_mm)

@@ -14,7 +14,7 @@ from ezdxf.math import Vec3
 from shapely.geometry import LineString, box
 
 from satAOI_adapters.collector import collector_at_rest
-from satAOI_adapters.dxf_read.corner import from_corner, spot
+from satAOI_adapters.dxf_read.corner import from_corner
 from satAOI_adapters.dxf_read.curves import Point
 from satAOI_adapters.dxf_read.dashed import without_dashed
 from satAOI_adapters.dxf_read.doors import (
@@ -33,6 +33,7 @@ from satAOI_adapters.dxf_read.nameless import with_nameless_walls
 from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
 from satAOI_adapters.dxf_read.openings import Still, shut, with_openings
 from satAOI_adapters.dxf_read.options import ReadOptions
+from satAOI_adapters.dxf_read.placement import rounded_spot
 from satAOI_adapters.dxf_read.plans import Drawn, chosen, clusters, rough_lines, within
 from satAOI_adapters.dxf_read.shapes import middle_line
 from satAOI_adapters.dxf_read.survey import Survey, survey
@@ -288,10 +289,10 @@ def _start(
         for place in _places(entity)
     ]
     if options.start is not None:
-        return spot(frame.to_local_mm(options.start)), ()
+        return rounded_spot(*frame.to_local_mm(options.start).tolist()), ()
     if not marks:
         return None, ()
-    start_mm = spot(frame.to_local_mm(marks[0]))
+    start_mm = rounded_spot(*frame.to_local_mm(marks[0]).tolist())
     if len(marks) == 1:
         return start_mm, ()
     return start_mm, (
