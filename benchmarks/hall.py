@@ -12,8 +12,10 @@ import platform
 import subprocess
 import sys
 import tempfile
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final
 
 from benchmarks.clock import Job, timed
@@ -21,6 +23,7 @@ from satAOI_adapters import read_plan, write_aoi
 from satAOI_geo.aoi import area
 from satAOI_geo.freespace import free_space
 from satAOI_geo.intervals import Intervals
+from satAOI_geo.kernels import VARIABLE
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.pipeline import area_of_interest
 from satAOI_geo.reach import Band, DiscComponents, PoseComponents
@@ -78,15 +81,30 @@ def stages(drawing: Path, folder: Path) -> dict[str, Job]:
 
 
 def commands(drawing: Path, folder: Path) -> dict[str, Job]:
-    """The whole command in a process of its own, once for each rule of connectivity."""
+    """The whole command in processes of its own: its help, by each rule, and where it compiles."""
 
-    def command(connectivity: str) -> Job:
+    def command(*arguments: str, environment: Mapping[str, str] = MappingProxyType({})) -> None:
+        program = [sys.executable, "-c", COMMAND, *arguments]
+        quiet = subprocess.DEVNULL
+        own = os.environ | environment
+        subprocess.run(program, check=True, stdout=quiet, env=own)  # noqa: S603  the command timed
+
+    def whole(connectivity: str) -> Job:
+        output = str(folder / f"{connectivity}.dxf")
         options = ["--connectivity", connectivity, "--quiet"]
-        files = [str(drawing), "-o", str(folder / f"{connectivity}.dxf")]
-        arguments = [sys.executable, "-c", COMMAND, *files, *options]
-        return lambda: subprocess.run(arguments, check=True)  # noqa: S603  the command timed
+        return lambda: command(str(drawing), "-o", output, *options)
 
-    return {f"whole command, {rule}": command(rule) for rule in ("disc", "pose")}
+    def first() -> None:
+        with tempfile.TemporaryDirectory() as empty:
+            arguments = [str(drawing), "-o", str(folder / "first.dxf"), "--quiet"]
+            command(*arguments, environment={VARIABLE: empty})
+
+    return {
+        "--help": lambda: command("--help"),
+        "whole command, disc": whole("disc"),
+        "whole command, pose": whole("pose"),
+        "whole command, first run": first,
+    }
 
 
 if __name__ == "__main__":

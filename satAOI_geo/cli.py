@@ -328,10 +328,8 @@ def answer(
     from satAOI_geo.pipeline import area_of_interest
 
     mark = None if options["start"] is None else mark_of(options["start"], plan)
-    if not kernel_cache.are_compiled():
-        if not quiet:
-            say_note("first run of this version: compiling takes some seconds, once")
-        kernel_cache.compile_beside()
+    if not quiet and not kernel_cache.are_compiled():
+        say_note("first run of this version: compiling takes some seconds, once")
     with progress(quiet=quiet) as told:
         return area_of_interest(plan, robot, settings, start=mark, progress=told, crew=crew)
 

@@ -8,9 +8,10 @@ colon for each axis of an array, and `const` where it is only read. Arrays are i
 A kernel allocates nothing and raises nothing; it is given room for its results, and what it calls
 is a `helper`.
 
-A kernel is compiled where it is first called on a machine. Its machine code is kept, and later
-runs load that instead of a compiler, see `machine_code`: in the folder that the environment's
-`NUMBA_CACHE_DIR` names, else beside Python's own compiled code of this module.
+A kernel is made where it is first called on a machine, of the bitcode that comes with the program,
+see `bitcode`. Its machine code is kept, and later runs load that, see `machine_code`: in the folder
+that the environment's `NUMBA_CACHE_DIR` names, else beside Python's own compiled code of this
+module.
 """
 
 import hashlib
@@ -27,14 +28,14 @@ from typing import Any, Final, Generic, ParamSpec, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from satAOI_geo import bitcode
 from satAOI_geo.machine_code import (
-    OPTIONS,
     Function,
     Parameter,
     Signature,
-    compiled,
     loaded,
     machine,
+    object_file,
 )
 
 P = ParamSpec("P")
@@ -120,35 +121,72 @@ class Kernel(Generic[P, R]):
         return result
 
     def ready(self) -> Function:
-        """What runs it, loaded or compiled first."""
+        """What runs it, loaded or made first."""
         with _one_at_a_time:
             if self._run is None:
-                self._run = self._signature.at(self._loaded() or self._compiled())
+                address = self._loaded() or self._made_of(self.shipped()) or self._made_by_numba()
+                self._run = self._signature.at(address)
             return self._run
 
     def is_kept(self) -> bool:
         """Whether its machine code is kept."""
         return os.path.exists(self._path())
 
+    def shipped(self) -> bytes | None:
+        """Its bitcode that comes with the program; None if there is none, or of another source."""
+        try:
+            return bitcode.shipped(self.bitcode_name)
+        except OSError:
+            # there is no source, only what Python has compiled
+            return None
+
+    def made_by_numba(self) -> bitcode.Made:
+        """The kernel as numba compiles it now."""
+        return bitcode.made(self._body, self._signature, HELPERS)
+
     def _loaded(self) -> int | None:
         """The address of kept machine code."""
-        object_file = _read(self._path())
-        return loaded(self._name, object_file) if object_file is not None else None
+        kept = _read(self._path())
+        return None if kept is None else loaded(self._name, kept)
 
-    def _compiled(self) -> int:
-        """The address of machine code made now, which is kept where that is possible."""
-        made = compiled(self._name, self._body, self._signature, HELPERS)
-        if made.object_file is not None:
-            _keep(self._path(), made.object_file)
-        self._callback = made.callback
-        return int(made.callback.address)
+    def _made_of(self, of: bytes | None) -> int | None:
+        """The address of machine code made of bitcode, which is kept where that is possible."""
+        made = None if of is None else object_file(of, self._name)
+        if made is None:
+            return None
+        _keep(self._path(), made)
+        return loaded(self._name, made)
+
+    def _made_by_numba(self) -> int:
+        """The address of machine code made by numba."""
+        made = self.made_by_numba()
+        address = self._made_of(made.bitcode)
+        if address is None:
+            self._callback, address = made.callback, int(made.callback.address)
+        return address
+
+    @property
+    def bitcode_name(self) -> str:
+        """Of its bitcode: the same for the same source, else another.
+
+        Raises:
+            OSError: If its source is not there.
+        """
+        return f"{self._full_name}-{self._digest_of(bitcode.text_of)}.bc"
 
     @cached_property
     def _name(self) -> str:
         """Of its machine code: the same for the same source on the same machine, else another."""
-        source = _source_of(self._body.__code__, self._body.__globals__)
-        made_by = _digest(OPTIONS, self._signature, self._signature.entry(), *source)
-        return f"{self._body.__module__}.{self._body.__name__}-{_digest(machine())}-{made_by}"
+        return f"{self._full_name}-{_digest(machine())}-{self._digest_of(_compiled_by_python)}"
+
+    @property
+    def _full_name(self) -> str:
+        return f"{self._body.__module__}.{self._body.__name__}"
+
+    def _digest_of(self, told: Callable[[Function], str]) -> str:
+        """Of all that it is made from, functions as they are told."""
+        signature, options = self._signature, bitcode.OPTIONS
+        return _digest(options, signature, signature.entry(), *_sources_of(self._body, told))
 
     def _path(self) -> str:
         folder = os.environ.get(VARIABLE) or os.path.dirname(cache_from_source(__file__))
@@ -164,19 +202,33 @@ def _parsed(signature: str) -> Signature:
     return Signature(tuple(taken), None if signature.startswith("void") else returned)
 
 
-def _source_of(code: CodeType, known: dict[str, Any]) -> Iterator[str]:
-    """What a function, with the names known to it, and its helpers are made from."""
-    yield f"{code.co_code.hex()} {code.co_names} {code.co_varnames}"
-    for constant in code.co_consts:
-        yield from (
-            _source_of(constant, known) if isinstance(constant, CodeType) else [repr(constant)]
-        )
-    for name in code.co_names:
-        value = known.get(name)
+def _sources_of(function: Function, told: Callable[[Function], str]) -> Iterator[str]:
+    """What a function is made from: itself, what the names in it stand for, and its helpers."""
+    yield told(function)
+    names = {name for code in _codes(function.__code__) for name in code.co_names}
+    for name in sorted(names):
+        value = function.__globals__.get(name)
         if isinstance(value, FunctionType) and value in HELPERS:
-            yield from _source_of(value.__code__, value.__globals__)
+            yield from _sources_of(value, told)
         elif not isinstance(value, ModuleType):
             yield f"{name} = {value!r}"
+
+
+def _compiled_by_python(function: Function) -> str:
+    """A function as Python has compiled it."""
+    return "\n".join(
+        f"{code.co_code.hex()} {code.co_names} {code.co_varnames} "
+        f"{[each for each in code.co_consts if not isinstance(each, CodeType)]}"
+        for code in _codes(function.__code__)
+    )
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    """Compiled code, and that of the functions in it."""
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _codes(constant)
 
 
 def _digest(*parts: object) -> str:

@@ -1,21 +1,18 @@
-"""Machine code of kernels: made with numba once, put into memory without numba ever after.
+"""Machine code of kernels: made of LLVM's bitcode, put into memory and called.
 
-    numba     turns a Python function into the language of LLVM, a compiler
-    llvmlite  is LLVM for Python, which numba stands on: it makes that an object file, as a C
-              compiler would, and puts object files into memory
+    llvmlite  is LLVM, a compiler, for Python: it makes bitcode an object file for this processor,
+              as a C compiler would, and puts object files into memory
     ctypes    calls what is there, the interpreter's lock released meanwhile
-
-To load numba takes longer than to search a small hall, to load llvmlite a twentieth of a second.
 
 LLVM ends the process when an object file calls a function that it cannot find. So an object file
 is made only of code that calls none but `C_FUNCTIONS`, and put into memory only where all of
-these are found. Calls that LLVM puts in by itself are to functions it has found for numba before.
+these are found. Calls that LLVM puts in by itself are to functions that it brings along.
 """
 
 import ctypes
 import os
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -26,16 +23,15 @@ import numpy as np
 
 Function = Callable[..., Any]
 
-OPTIONS: Final[dict[str, Any]] = {"error_model": "numpy", "no_cpython_wrapper": True}
-"""For numba: divide by zero as numpy does, instead of raising, and make nothing that Python could
-call. Either would need numba when the code is used."""
-
 C_FUNCTIONS: Final = frozenset(
     "acos acosh asin asinh atan atan2 atanh ceil copysign cos cosh erf erfc exp expm1 "  # noqa: SIM905  easier read
     "fabs floor fmod hypot lgamma log log10 log1p memcpy memmove memset pow round sin "
     "sinh sqrt tan tanh tgamma trunc".split()
 )
 """Functions of C that code may call, or LLVM's operations of that name become."""
+
+ENTRY: Final = "kernel"
+"""What bitcode calls the one function in it that is called from outside."""
 
 _place_of: Final[Callable[[Any], Any]] = (ctypes.c_char * 0).from_buffer
 """Where an array lies that may be written to."""
@@ -118,19 +114,6 @@ class Signature:
         return ctypes.CFUNCTYPE(returned, *taken)(address)
 
 
-@dataclass(frozen=True, slots=True)
-class Compiled:
-    """A kernel that numba has compiled in this process.
-
-    Attributes:
-        object_file: For later runs; None if it would call more than `C_FUNCTIONS`.
-        callback: What numba has of it, with an `address`; in memory as long as somebody keeps it.
-    """
-
-    object_file: bytes | None
-    callback: Any
-
-
 @cache
 def machine() -> str:
     """What machine code depends on besides its source: versions and the processor."""
@@ -140,26 +123,41 @@ def machine() -> str:
     return "\n".join([*releases, python, llvm.get_process_triple(), *processor])
 
 
-def compiled(
-    name: str, body: Function, signature: Signature, helpers: Iterable[Function]
-) -> Compiled:
-    """Compile a kernel with numba.
+def object_file(bitcode: bytes, name: str) -> bytes | None:
+    """An object file for this machine, with one function; None where it cannot be made.
+
+    The bitcode may be of a later LLVM, for another sort of processor, or call more than
+    `C_FUNCTIONS`.
 
     Args:
-        name: What its object file calls it.
-        body: The function; it allocates nothing and calls only the helpers.
-        signature: What it takes and returns.
-        helpers: Functions, which may call each other.
+        bitcode: Of a function, `ENTRY`.
+        name: What the object file calls the function.
     """
-    import numba  # noqa: PLC0415  only where nobody has compiled the kernel yet
+    try:
+        module = llvm.parse_bitcode(bitcode)
+    except RuntimeError:
+        return None
+    target = target_machine()
+    if _processor(module.triple) != _processor(target.triple):
+        return None
+    module.triple, module.data_layout = target.triple, str(target.target_data)
+    module.get_function(ENTRY).name = name
+    optimise(module, target, for_processor=True)
+    values = (*module.functions, *module.global_variables)
+    called = {value.name for value in values if value.is_declaration}
+    if {each for each in called if not each.startswith("llvm.")} - C_FUNCTIONS:
+        return None
+    return bytes(target.emit_object(module))
 
-    for function in (body, *helpers):
-        _make_known(function)
-    scope = {"body": body, "carray": numba.carray}
-    # numba takes no function of a varying number of arguments
-    entry = eval(signature.entry(), scope)  # noqa: S307  of our own words
-    callback = numba.cfunc(_in_numba(signature), **OPTIONS)(entry)
-    return Compiled(_object_file(callback, name), callback)
+
+def optimise(module: llvm.ModuleRef, target: llvm.TargetMachine, *, for_processor: bool) -> None:
+    """Make code shorter and faster, for a processor's vector instructions or for any processor."""
+    options = llvm.create_pipeline_tuning_options(3 if for_processor else 2)
+    options.loop_vectorization = options.loop_interleaving = for_processor
+    options.loop_unrolling = for_processor
+    options.slp_vectorization = False
+    builder = llvm.create_pass_builder(target, options)
+    builder.getModulePassManager().run(module, builder)
 
 
 def loaded(name: str, object_file: bytes) -> int | None:
@@ -184,78 +182,29 @@ def _release(package: str) -> str:
 
 
 @cache
-def _make_known(function: Function) -> None:
-    """Tell numba to compile a function where others that it compiles call it."""
-    from numba.extending import register_jitable  # noqa: PLC0415  as above
-
-    register_jitable(**OPTIONS)(function)
-
-
-def _in_numba(signature: Signature) -> Any:  # noqa: ANN401  numba publishes no types
-    """A signature of addresses, sizes and numbers."""
-    from numba import from_dtype, types  # noqa: PLC0415  as above
-
-    taken = []
-    for parameter in signature.takes:
-        element = from_dtype(parameter.dtype)
-        taken.append(types.CPointer(element) if parameter.n_axes else element)
-        taken += [types.int64] * parameter.n_axes
-    returned = from_dtype(signature.returns.dtype) if signature.returns else types.void
-    return returned(*taken)
-
-
-def _object_file(callback: Any, name: str) -> bytes | None:  # noqa: ANN401  numba's, untyped
-    """The object file of a compiled kernel; None if it would call more than `C_FUNCTIONS`."""
-    module = llvm.parse_assembly(callback.inspect_llvm())
-    target = _target_machine()
-    _cut_loose(module, callback.native_name, name, target)
-    values = (*module.functions, *module.global_variables)
-    called = {value.name for value in values if value.is_declaration}
-    if {each for each in called if not each.startswith("llvm.")} - C_FUNCTIONS:
-        return None
-    return bytes(target.emit_object(module))
-
-
-def _cut_loose(module: llvm.ModuleRef, entry: str, name: str, target: llvm.TargetMachine) -> None:
-    """Name a kernel's entry and take out what cannot be reached from there.
-
-    That is all that numba has put in for errors, which its kernels do not raise, and for counting
-    references to arrays, which are not its own: that is known once constants are passed on from
-    function to function, and for that functions must not be visible from outside.
-    """
-    for value in (*module.functions, *module.global_variables):
-        if not value.is_declaration:
-            value.linkage = "internal"
-    function = module.get_function(entry)
-    function.linkage, function.name = "external", name
-    passes = llvm.create_new_module_pass_manager()
-    passes.add_ipsccp_pass()
-    passes.add_simplify_cfg_pass()
-    passes.add_global_opt_pass()
-    passes.add_global_dead_code_eliminate_pass()
-    passes.add_strip_dead_prototype_pass()
-    passes.run(module, llvm.create_pass_builder(target, llvm.create_pipeline_tuning_options()))
-
-
-@cache
 def _engine() -> llvm.ExecutionEngine | None:
     """What puts object files into memory; None where a function of C is not found."""
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target_machine())
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), target_machine())
     if any(llvm.address_of_symbol(name) is None for name in C_FUNCTIONS):
         return None
     return engine
 
 
-def _target_machine() -> llvm.TargetMachine:
-    """This machine, in the way that numba compiles for it."""
+def target_machine(cpu: str | None = None) -> llvm.TargetMachine:
+    """This machine, or one of its sort with another processor."""
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     target = llvm.Target.from_triple(llvm.get_process_triple())
     return target.create_target_machine(
-        cpu=llvm.get_host_cpu_name(),
-        features=llvm.get_host_cpu_features().flatten(),
+        cpu=cpu or llvm.get_host_cpu_name(),
+        features="" if cpu else llvm.get_host_cpu_features().flatten(),
         opt=3,
         reloc="static" if target.name.startswith("x86") else "default",
         codemodel="jitdefault",
         jit=True,
     )
+
+
+def _processor(triple: str) -> str:
+    """What sort of processor code is for, of a triple "x86_64-unknown-linux-gnu"."""
+    return triple.partition("-")[0]

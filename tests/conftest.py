@@ -10,11 +10,14 @@ import signal
 
 from hypothesis import settings
 
+import satAOI_geo.pipeline  # noqa: F401  its modules have the kernels
 from satAOI_adapters import kernel_cache
+from satAOI_geo.kernels import KERNELS
 
 signal.signal(signal.SIGINT, signal.default_int_handler)
 kernel_cache.prepare()
-kernel_cache.compile_all()
+for kernel in KERNELS:
+    kernel.ready()
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")

@@ -1,25 +1,32 @@
 """Kernels run as machine code that is made once, and what they are given is looked at first."""
 
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
 from ctypes import ArgumentError
 from importlib.metadata import version
 from pathlib import Path
+from zipfile import ZipFile
 
+import llvmlite.binding as llvm
 import numpy as np
 import pytest
 
-from satAOI_adapters.kernel_cache import compile_all
-from satAOI_geo import kernels
+from satAOI_geo import bitcode, kernels
 from satAOI_geo.kernels import KERNELS, N_KEPT, VARIABLE, Kernel, filled, helper, kernel
-from satAOI_geo.machine_code import machine
+from satAOI_geo.machine_code import machine, object_file, target_machine
 from satAOI_geo.plan import FloatArray, IntArray
 from tests.command_line import ROOT, drawn_room
 
 WEIGHTED = "float64(const int64[:], const float64[:, :], float64, int64)"
 WEIGHT = 3
+
+of_the_same_sort = pytest.mark.skipif(
+    not target_machine().triple.startswith("x86_64"),
+    reason="the bitcode that comes with the program is for x86-64",
+)
 
 
 @helper
@@ -84,7 +91,7 @@ def test_machine_code_that_came_to_harm_is_made_anew(folder: Path, harm: bytes |
     harmed = whole[:-1] if harm is None else harm
     kept.write_bytes(harmed)
     assert of(total, WEIGHTED)(COLUMNS, TABLE, 0.7, 1) == total(COLUMNS, TABLE, 0.7, 1)
-    assert len(kept.read_bytes()) == len(whole)
+    assert kernels._read(str(kept)) is not None
 
 
 def test_machine_code_of_changed_sources_makes_room_for_new(
@@ -205,13 +212,38 @@ def test_rows_for_which_there_was_no_room_are_there_the_second_time(n_rows: int)
 
 
 def test_machine_code_of_all_kernels_of_the_program_is_kept() -> None:
-    compile_all()
+    for each in KERNELS:
+        each.ready()
     assert len(KERNELS) > 10
     assert {each.__name__ for each in KERNELS if not each.is_kept()} == set()
 
 
-def test_once_compiled_the_program_runs_without_numba(tmp_path: Path) -> None:
-    compile_all()
+def test_bitcode_of_all_kernels_comes_with_the_program() -> None:
+    names = sorted(each.bitcode_name for each in KERNELS)
+    with ZipFile(bitcode.ARCHIVE) as archive:
+        assert sorted(archive.namelist()) == names, "run python -m satAOI_adapters.bitcode_write"
+
+
+@of_the_same_sort
+def test_bitcode_that_comes_with_the_program_is_all_that_its_machine_code_needs() -> None:
+    for each in KERNELS:
+        code = each.shipped()
+        assert code is not None
+        assert object_file(code, each.__name__) is not None, each
+
+
+def test_bitcode_that_comes_with_the_program_knows_no_processor_and_no_folder() -> None:
+    for each in KERNELS:
+        code = each.shipped()
+        assert code is not None
+        text = str(llvm.parse_bitcode(code))
+        assert "target-cpu" not in text
+        assert not re.search(r"<\d+ x (i|float|double)", text), "vectors of one processor"
+        assert str(ROOT).encode() not in code
+
+
+@of_the_same_sort
+def test_the_program_runs_without_numba(tmp_path: Path, folder: Path) -> None:
     plan = drawn_room(tmp_path / "room.dxf")
     code = (
         "import sys; from satAOI_geo.cli import main; "
@@ -227,3 +259,65 @@ def test_once_compiled_the_program_runs_without_numba(tmp_path: Path) -> None:
         check=True,
     )
     assert done.stdout.splitlines()[-1] == "loaded: llvmlite"
+    assert len(list(folder.iterdir())) > 10
+
+
+@of_the_same_sort
+def test_machine_code_of_bitcode_gives_what_its_python_gives(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    code = of(total, WEIGHTED).made_by_numba().bitcode
+    monkeypatch.setattr(bitcode, "shipped", lambda _: code)
+    monkeypatch.delattr(bitcode, "made")
+    assert of(total, WEIGHTED)(COLUMNS, TABLE, 0.7, -1) == total(COLUMNS, TABLE, 0.7, -1)
+    assert len(list(folder.iterdir())) == 1
+
+
+@pytest.mark.usefixtures("folder")
+def test_bitcode_of_a_later_llvm_or_another_processor_is_left_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    module = llvm.parse_assembly('target triple = "riscv64-unknown-linux-gnu"')
+    for unfit in (b"nonsense", module.as_bitcode()):
+        monkeypatch.setattr(bitcode, "shipped", lambda _, unfit=unfit: unfit)
+        assert of(total, WEIGHTED)(COLUMNS, TABLE, 0.7, 1) == total(COLUMNS, TABLE, 0.7, 1)
+
+
+def test_bitcode_is_another_for_other_types_and_for_changed_helpers(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    name = of(total, WEIGHTED).bitcode_name
+    assert of(total, WEIGHTED).bitcode_name == name
+    assert of(total, WEIGHTED.replace("int64)", "int32)")).bitcode_name != name
+    monkeypatch.setattr(sys.modules[__name__], "WEIGHT", WEIGHT + 1)
+    assert of(total, WEIGHTED).bitcode_name != name
+
+
+def test_comments_and_docstrings_change_no_bitcode() -> None:
+    def plain(number: int) -> int:
+        return number + 1
+
+    def told(number: int) -> int:
+        """The next one."""
+        # comments say why
+        return (number  # and where
+                + 1)  # fmt: skip
+
+    def other(number: int) -> int:
+        return number + 2
+
+    plainly, in_words, otherwise = (
+        bitcode.text_of(each).partition("(")[2] for each in (plain, told, other)
+    )
+    assert in_words == plainly != otherwise
+
+
+def test_without_its_source_a_kernel_runs_all_the_same(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_source(_: object) -> str:
+        raise OSError("could not get source code")
+
+    monkeypatch.setattr(bitcode, "text_of", no_source)
+    assert of(total, WEIGHTED)(COLUMNS, TABLE, 0.7, 1) == total(COLUMNS, TABLE, 0.7, 1)
+    assert len(list(folder.iterdir())) == 1

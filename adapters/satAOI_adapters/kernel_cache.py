@@ -1,19 +1,14 @@
 """Where compiled kernels are kept between runs: one folder a user and version of the program."""
 
 import atexit
-import contextlib
 import os
 import shutil
 import sys
 import tempfile
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import satAOI_geo
-
-if TYPE_CHECKING:
-    from satAOI_geo.kernels import Kernel
 
 VARIABLE = "NUMBA_CACHE_DIR"
 """Read by `satAOI_geo.kernels`; a value that the user set is left alone."""
@@ -27,39 +22,11 @@ def prepare() -> None:
 
 def are_compiled() -> bool:
     """Whether all kernels are in the folder, none to be compiled."""
-    return all(kernel.is_kept() for kernel in _kernels())
-
-
-def compile_beside() -> None:
-    """Compile the kernels from the last one on in another process; this one does from the first.
-
-    Numba compiles one kernel at a time in a process; what the other has compiled is loaded.
-    """
-    import subprocess
-
-    command = [sys.executable, "-c", f"from {__name__} import compile_all; compile_all()"]
-    silent = subprocess.DEVNULL
-    own = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    with contextlib.suppress(OSError):
-        # nobody waits for it: what it has not done in time is compiled here
-        subprocess.Popen(  # noqa: S603  our own module, by our own interpreter
-            command, stdin=silent, stdout=silent, stderr=silent, env=own
-        )
-
-
-def compile_all() -> None:
-    """Make all kernels ready, the last one that a run calls first, and keep what is compiled."""
-    for kernel in reversed(_kernels()):
-        kernel.ready()
-
-
-def _kernels() -> "list[Kernel[..., Any]]":
-    """All kernels, in about the order in which a run calls them."""
     # it imports the modules that have kernels
     import_module("satAOI_geo.pipeline")
     from satAOI_geo.kernels import KERNELS
 
-    return KERNELS
+    return all(kernel.is_kept() for kernel in KERNELS)
 
 
 def _own_folder() -> Path:
