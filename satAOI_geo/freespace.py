@@ -48,7 +48,9 @@ class FreeSpace:
         """
         swing, way, iy, ix = self.barred[a1].T
         _, _, n_rows, n_words = self.words.shape
-        return np.unique(((swing * n_rows + iy) * n_words * WORD_BITS + ix)[way == rows_up])
+        steps = ((swing * n_rows + iy) * n_words * WORD_BITS + ix)[way == rows_up]
+        # without more than the numbers asked for, numpy loads its masked arrays first
+        return np.unique(steps, return_index=True)[0]
 
     def steps_up(self, a1: int) -> Words:
         """Nodes from which the disc may step up: shape (n_swings, n_rows, n_words)."""
@@ -185,10 +187,8 @@ def moves(engine: Engine, sweeps: Sweeps, space: FreeSpace, a1: int) -> Iterator
 def _vehicles(robot: Robot, lattice: Lattice, a1: int) -> list[Part]:
     """The vehicle at each swing of a direction."""
     directions = lattice.directions()
-    return [
-        robot.vehicle(directions[a1], directions[(a1 + turn) % lattice.n_directions])
-        for turn in lattice.swings
-    ]
+    headings = (a1 + np.array(lattice.swings)) % lattice.n_directions
+    return robot.vehicles(directions[a1], directions[headings])
 
 
 def run_threads(

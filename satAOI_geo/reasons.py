@@ -200,15 +200,22 @@ class _TileRow:
         lattice, disc_mm = self.found.lattice, self.found.robot.disc_radius_mm
         _, columns = tile.nodes(lattice, disc_mm)
         window = lattice.window(self.rows, columns)
-        wider = {
-            reason: region_of(
-                outlines_of(nodes.window(EVERYTHING, columns), window, disc_mm - order * APART_MM)
-            )
-            for order, (reason, nodes) in enumerate(self.fitting.items(), start=1)
-        }
+        fitting = [nodes.window(EVERYTHING, columns) for nodes in self.fitting.values()]
+
+        def troweled(k: int) -> Region:
+            return region_of(outlines_of(fitting[k], window, disc_mm - (k + 1) * APART_MM))
+
+        # a tile of its own has the cores for itself; several share them anyway
+        each = run_threads if len(self.tiles) == 1 else _in_turn
+        wider = dict(zip(self.fitting, each(troweled, len(fitting)), strict=True))
         upper = self.whole.upper.within(tile.around_mm)
         apart_mm = (1 + len(wider)) * APART_MM
         return wider | {Reason.PATH: as_region(upper.buffer(-apart_mm, join_style="mitre"))}
+
+
+def _in_turn(job: Callable[[int], Region], n_jobs: int) -> list[Region]:
+    """The answers of jobs 0 .. n_jobs - 1."""
+    return [job(k) for k in range(n_jobs)]
 
 
 def _fitting_nodes(found: Search, rows: slice) -> dict[Reason, Nodes]:

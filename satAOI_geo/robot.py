@@ -150,18 +150,18 @@ class Robot:
 
     def vehicle(self, arm: FloatArray, heading: FloatArray) -> Part:
         """The vehicle with D at the origin; `arm` is u(a1), `heading` u(yaw), shape (2,) each."""
-        centre_mm = self.arm_length_mm * arm + self.pivot_offset_mm * heading
-        ahead_mm = self.vehicle_length_mm / 2 * heading
-        left_mm = self.vehicle_width_mm / 2 * np.array((-heading[1], heading[0]))
-        corners_mm = np.array(
-            (
-                -ahead_mm - left_mm,
-                ahead_mm - left_mm,
-                ahead_mm + left_mm,
-                left_mm - ahead_mm,
-            )
+        return self.vehicles(arm, heading[np.newaxis])[0]
+
+    def vehicles(self, arm: FloatArray, headings: FloatArray) -> list[Part]:
+        """The vehicle at several headings, shape (n, 2), all with the same arm."""
+        centres_mm = self.arm_length_mm * arm + self.pivot_offset_mm * headings
+        ahead_mm = self.vehicle_length_mm / 2 * headings
+        left_mm = self.vehicle_width_mm / 2 * np.column_stack((-headings[:, 1], headings[:, 0]))
+        corners_mm = np.stack(
+            (-ahead_mm - left_mm, ahead_mm - left_mm, ahead_mm + left_mm, left_mm - ahead_mm),
+            axis=1,
         )
-        return Part(centre_mm + corners_mm, 0.0)
+        return [Part(ring_mm, 0.0) for ring_mm in centres_mm[:, np.newaxis] + corners_mm]
 
 
 ROBOTS: Final = {

@@ -10,7 +10,7 @@ from tests.command_line import drawn_room
 
 DRAWING = """
 import ezdxf
-document = ezdxf.new()
+document = ezdxf.new(setup=True)
 space = document.modelspace()
 for layer in "AAB":
     space.add_line((0, 0), (1, 1), dxfattribs={"layer": layer})
@@ -38,9 +38,11 @@ def test_a_run_that_reads_and_writes_a_drawing_loads_none_of_them(tmp_path: Path
         "from satAOI_geo.cli import main\n"
         f"main([{str(plan)!r}, '-o', {str(output)!r}, '--quiet'])\n"
         "parts = ('pyparsing.core', 'fontTools', 'fontTools.ttLib.ttFont')\n"
-        "print('ezdxf' in sys.modules, *(name for name in parts if name in sys.modules))"
+        "print('ezdxf' in sys.modules, *(name for name in parts if name in sys.modules))\n"
+        "hatches, texts = sys.modules['ezdxf.tools.pattern'], sys.modules['ezdxf.tools.text_size']\n"
+        "print('ISO_PATTERN' in vars(hatches), 'mtext_size' in vars(texts))"
     )
-    assert said(code) == "True\n"
+    assert said(code) == "True\nFalse False\n"
 
 
 @pytest.mark.parametrize(
@@ -70,6 +72,27 @@ def test_a_run_that_reads_and_writes_a_drawing_loads_none_of_them(tmp_path: Path
         pytest.param(
             "from importlib.util import find_spec; print(find_spec('pyparsing').origin)",
             id="where it lies",
+        ),
+        pytest.param(
+            "hatch = space.add_hatch(); hatch.set_pattern_fill('ANSI31', scale=2.0)\n"
+            "print(hatch.pattern.as_list(), len(ezdxf.pattern.ISO_PATTERN))",
+            id="the pattern of a hatch",
+        ),
+        pytest.param(
+            "text = space.add_mtext('area of interest', dxfattribs={'char_height': 2.5})\n"
+            "from ezdxf.tools.text_size import mtext_size; print(mtext_size(text))",
+            id="the size of a text",
+        ),
+        pytest.param(
+            "builder = space.add_multileader_mtext('Standard'); builder.set_content('floor')\n"
+            "builder.build(insert=ezdxf.math.Vec2(0, 0))\n"
+            "from ezdxf.bbox import extents; print(extents([builder.multileader]))",
+            id="a text with a leader",
+        ),
+        pytest.param(
+            "from ezdxf.tools import pattern, text_size\n"
+            "print(pattern.load(factor=2.0)['ANSI31'], text_size.__name__)",
+            id="modules of ezdxf's own",
         ),
         pytest.param(IN_THREADS, id="threads"),
     ],

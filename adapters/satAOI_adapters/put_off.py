@@ -1,9 +1,10 @@
-"""Libraries that ezdxf loads at once and hardly ever uses, put off until they are used.
+"""Modules that ezdxf loads at once and hardly ever uses, put off until they are used.
 
-ezdxf reads queries, such as `LINE[layer=="A-WALL"]`, with pyparsing, and typefaces with fontTools.
-This program asks no queries and measures no texts, and the two are a tenth of all that a run
-loads. So something stands in for what ezdxf takes from them. Where that is used after all, or
-anything else of the two is asked for, the library is loaded and everything is as ever.
+ezdxf reads queries, such as `LINE[layer=="A-WALL"]`, with pyparsing, and typefaces with fontTools;
+it works out all patterns of hatches and can measure texts as a CAD program sets them. This program
+asks for none of these, and they are more than a tenth of all that a run loads. So something stands
+in for what ezdxf takes from them. Where that is used after all, or anything else of them is asked
+for, the module is loaded and everything is as ever.
 """
 
 import sys
@@ -17,8 +18,10 @@ TAKEN: Final = {
     "ezdxf.queryparser": ("ezdxf.query", ["EntityQueryParser"]),
     "pyparsing": ("ezdxf.sections.blocks", ["ParseException"]),
     "fontTools.ttLib": ("ezdxf.fonts.font_manager", ["TTFont", "TTLibError"]),
+    "ezdxf.tools.pattern": ("ezdxf.entities.pattern", []),
+    "ezdxf.tools.text_size": ("ezdxf.render.mleader", []),
 }
-"""Module that is put off, to the module of ezdxf that takes something from it, and what."""
+"""Module that is put off, to one of ezdxf that takes it, or parts of it, and which parts."""
 
 _one_at_a_time = Lock()
 
