@@ -303,6 +303,8 @@ def _compare(
         How many such pairs were met: all that were joined, or one in each row that has any.
     """
     n = 0
+    # the last two parents that were found to have one root, as most neighbouring runs have them
+    known_a = known_b = np.int32(-1)
     for iy in range(allowed.shape[0]):
         if join and not rows[iy]:
             continue
@@ -310,23 +312,22 @@ def _compare(
         a, b = first_a[iy], first_b[iy]
         a_stop, b_stop = first_a[iy + 1], first_b[iy + 1]
         while a < a_stop and b < b_stop:
-            ix, last_ix = max(begin[a], begin[b]), min(end[a], end[b])
-            # in this order: most runs have one parent, and of the others most do not meet
-            if (
-                parents[a] != parents[b]
-                and ix <= last_ix
-                and _root(parents, a) != _root(parents, b)
-                and 0 <= _next_bit(allowed[iy], ix) <= last_ix
-            ):
-                n += 1
-                if not join:
-                    rows[iy] = True
-                    break
-                _unite_two(parents, a, b)
-            if end[a] < end[b]:
-                a += 1
-            else:
-                b += 1
+            parent_a, parent_b = parents[a], parents[b]
+            if parent_a != parent_b and (parent_a != known_a or parent_b != known_b):
+                ix, last_ix = max(begin[a], begin[b]), min(end[a], end[b])
+                if ix <= last_ix:
+                    if _root(parents, a) == _root(parents, b):
+                        known_a, known_b = parent_a, parent_b
+                    elif 0 <= _next_bit(allowed[iy], ix) <= last_ix:
+                        n += 1
+                        if not join:
+                            rows[iy] = True
+                            break
+                        _unite_two(parents, a, b)
+            # no branch, which the processor would take wrongly half of the time
+            a_ends, b_ends = end[a] <= end[b], end[b] <= end[a]
+            a += int(a_ends)
+            b += int(b_ends)
     return n
 
 
