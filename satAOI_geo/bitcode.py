@@ -50,10 +50,16 @@ class Made:
 
 
 def shipped(name: str) -> bytes | None:
-    """The bitcode of that name that comes with the program; None where there is none."""
-    from zipfile import ZipFile  # noqa: PLC0415  only where a kernel's machine code is not kept
+    """The bitcode of that name that comes with the program.
 
-    with suppress(OSError, KeyError), ZipFile(ARCHIVE) as archive:
+    None where there is none, or the archive has come to harm.
+    """
+    # only where a kernel's machine code is not kept
+    from zipfile import BadZipFile, ZipFile  # noqa: PLC0415
+    from zlib import error as ZlibError  # noqa: N812, PLC0415
+
+    faults = (OSError, KeyError, ValueError, RuntimeError, EOFError, BadZipFile, ZlibError)
+    with suppress(*faults), ZipFile(ARCHIVE) as archive:
         return archive.read(name)
     return None
 

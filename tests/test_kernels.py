@@ -283,6 +283,23 @@ def test_bitcode_of_a_later_llvm_or_another_processor_is_left_alone(
         assert of(total, WEIGHTED)(COLUMNS, TABLE, 0.7, 1) == total(COLUMNS, TABLE, 0.7, 1)
 
 
+@pytest.mark.parametrize("begin", [0, 100, 1000, -100])
+def test_an_archive_of_bitcode_that_came_to_harm_is_left_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, begin: int
+) -> None:
+    whole = bytearray(Path(bitcode.ARCHIVE).read_bytes())
+    whole[begin : begin + 90] = b"harm!" * 18
+    harmed = tmp_path / "kernels.zip"
+    harmed.write_bytes(whole)
+    sound = [each.shipped() for each in KERNELS]
+    monkeypatch.setattr(bitcode, "ARCHIVE", str(harmed))
+    found = [each.shipped() for each in KERNELS]
+    assert None in found
+    assert all(code in {None, expected} for code, expected in zip(found, sound, strict=True))
+    harmed.unlink()
+    assert {each.shipped() for each in KERNELS} == {None}
+
+
 def test_bitcode_is_another_for_other_types_and_for_changed_helpers(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
