@@ -550,7 +550,7 @@ def test_layer_names_are_ascii(drawn: Result, tmp_path: Path) -> None:
     }
 
 
-WRITE_TWO = """
+WRITE_ALL = """
 import pickle, sys
 from pathlib import Path
 from satAOI_adapters import read_plan, write_aoi
@@ -560,13 +560,21 @@ for number, path in enumerate(pickled):
 """
 
 
+def old_version(path: Path) -> Path:
+    """The drawing, said to be of R14, which is given arrows as it is brought up to date."""
+    path.write_bytes(path.read_bytes().replace(b"AC1015", b"AC1014"))
+    return path
+
+
 def test_bytes_do_not_depend_on_the_hash_seed_or_the_time(tmp_path: Path) -> None:
     whole = results.furnished_result()
     # the kernels' data do not travel between processes, and no writer looks at them
     new = replace(whole, search=replace(whole.search, engine=None, pose=None))
     plan = drawing_file(tmp_path / "plan.dxf", "R2018")
-    over = results.on_drawing(new, plan, "mm", Frame())
-    for name, result in (("new", new), ("over", over)):
+    old = old_version(drawing_file(tmp_path / "old.dxf", "R2000"))
+    over, upgraded = (results.on_drawing(new, file, "mm", Frame()) for file in (plan, old))
+    names = ("new", "over", "upgraded")
+    for name, result in zip(names, (new, over, upgraded), strict=True):
         (tmp_path / name).write_bytes(pickle.dumps(result))
     runs = []
     for seed in ("1", "2", "3"):
@@ -574,11 +582,11 @@ def test_bytes_do_not_depend_on_the_hash_seed_or_the_time(tmp_path: Path) -> Non
         folder.mkdir()
         path = os.pathsep.join((str(ROOT), str(ROOT / "adapters")))
         subprocess.run(
-            [sys.executable, "-c", WRITE_TWO, folder, tmp_path / "new", tmp_path / "over"],
+            [sys.executable, "-c", WRITE_ALL, folder, *(tmp_path / name for name in names)],
             check=True,
             env={**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": path},
         )
-        runs.append([(folder / name).read_bytes() for name in ("0.dxf", "1.dxf")])
+        runs.append([(folder / f"{number}.dxf").read_bytes() for number in range(3)])
     assert runs[0] == runs[1] == runs[2]
 
 

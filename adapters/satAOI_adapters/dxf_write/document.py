@@ -5,13 +5,14 @@ import io
 from collections.abc import Iterator
 from hashlib import sha256
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import ezdxf
 from ezdxf import recover
 from ezdxf.document import Drawing
 from ezdxf.entities import DXFGraphic, Ellipse
 from ezdxf.lldxf.const import DXF2010, DXFError
+from ezdxf.render.arrows import ARROWS
 
 from satAOI_adapters.dxf_write.layers import PREFIX
 from satAOI_adapters.dxf_write.pen import Pen
@@ -57,7 +58,7 @@ def base_document(plan: FloorPlan) -> Drawing:
     """
     from_dxf = plan.source.format == "dxf"
     # what the reader heard of the file's flaws, it has said
-    with heard():
+    with heard(), _arrows_in_order():
         document = _opened(plan.source) if from_dxf else _drawn(plan)
     _turn_ellipses(document)
     document.dxfversion = max(document.dxfversion, DXF2010)
@@ -158,6 +159,21 @@ def _remove_earlier_output(document: Drawing) -> None:
         # an entity of an unknown type has no layer that could be asked for
         if isinstance(entity, DXFGraphic) and entity.dxf.layer.upper().startswith(PREFIX):
             space.delete_entity(entity)
+
+
+@contextlib.contextmanager
+def _arrows_in_order() -> Iterator[None]:
+    """While this lasts, the library gives a drawing of R12 its arrows in the order of their names.
+
+    It would take them from a set, in another order every time.
+    """
+    arrows: Any = ARROWS
+    arrows.__acad__ = dict.fromkeys(sorted(arrows.__acad__))
+    try:
+        yield
+    finally:
+        # what its class has comes to the fore again
+        del arrows.__acad__
 
 
 @contextlib.contextmanager
