@@ -12,10 +12,8 @@ import platform
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
-from types import MappingProxyType
 from typing import Final
 
 from benchmarks.clock import Job, timed
@@ -83,10 +81,9 @@ def stages(drawing: Path, folder: Path) -> dict[str, Job]:
 def commands(drawing: Path, folder: Path) -> dict[str, Job]:
     """The whole command in processes of its own: its help, by each rule, and where it compiles."""
 
-    def command(*arguments: str, environment: Mapping[str, str] = MappingProxyType({})) -> None:
-        program = [sys.executable, "-c", COMMAND, *arguments]
+    def command(*arguments: str, **environment: str) -> None:
+        program, own = [sys.executable, "-c", COMMAND, *arguments], os.environ | environment
         quiet = subprocess.DEVNULL
-        own = os.environ | environment
         subprocess.run(program, check=True, stdout=quiet, env=own)  # noqa: S603  the command timed
 
     def whole(connectivity: str) -> Job:
@@ -97,7 +94,7 @@ def commands(drawing: Path, folder: Path) -> dict[str, Job]:
     def first() -> None:
         with tempfile.TemporaryDirectory() as empty:
             arguments = [str(drawing), "-o", str(folder / "first.dxf"), "--quiet"]
-            command(*arguments, environment={VARIABLE: empty})
+            command(*arguments, **{VARIABLE: empty})
 
     return {
         "--help": lambda: command("--help"),

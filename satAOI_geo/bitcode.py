@@ -54,11 +54,10 @@ def shipped(name: str) -> bytes | None:
 
     None where there is none, or the archive has come to harm.
     """
-    # only where a kernel's machine code is not kept
-    from zipfile import BadZipFile, ZipFile  # noqa: PLC0415
-    from zlib import error as ZlibError  # noqa: N812, PLC0415
+    import zlib  # noqa: PLC0415  only where a kernel's machine code is not kept
+    from zipfile import BadZipFile, ZipFile  # noqa: PLC0415  as above
 
-    faults = (OSError, KeyError, ValueError, RuntimeError, EOFError, BadZipFile, ZlibError)
+    faults = (OSError, KeyError, ValueError, RuntimeError, EOFError, BadZipFile, zlib.error)
     with suppress(*faults), ZipFile(ARCHIVE) as archive:
         return archive.read(name)
     return None
@@ -136,6 +135,7 @@ def _cut_loose(callback: Any) -> bytes:  # noqa: ANN401  numba's, untyped
     function = module.get_function(callback.native_name)
     function.linkage, function.name = "external", ENTRY
     target = target_machine("generic")
-    for _ in ("functions are put into those that call them", "what that makes needless goes"):
+    # what is needless once functions are put into those that call them goes the second time
+    for _ in range(2):
         optimise(module, target, for_processor=False)
     return bytes(module.as_bitcode())

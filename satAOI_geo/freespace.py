@@ -49,7 +49,7 @@ class FreeSpace:
         swing, way, iy, ix = self.barred[a1].T
         _, _, n_rows, n_words = self.words.shape
         steps = ((swing * n_rows + iy) * n_words * WORD_BITS + ix)[way == rows_up]
-        # without more than the numbers asked for, numpy loads its masked arrays first
+        # asked for their places too, numpy does not load its masked arrays for it
         return np.unique(steps, return_index=True)[0]
 
     def steps_up(self, a1: int) -> Words:

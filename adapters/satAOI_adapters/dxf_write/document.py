@@ -163,9 +163,10 @@ def _remove_earlier_output(document: Drawing) -> None:
 
 @contextlib.contextmanager
 def _arrows_in_order() -> Iterator[None]:
-    """While this lasts, the library gives a drawing of R12 its arrows in the order of their names.
+    """While this lasts, drawings of R13 and R14 are given arrows in the order of their names.
 
-    It would take them from a set, in another order every time.
+    The library, which does so to bring them up to R2000, would take them from a set, in another
+    order every time.
     """
     arrows: Any = ARROWS
     arrows.__acad__ = dict.fromkeys(sorted(arrows.__acad__))
