@@ -1,10 +1,8 @@
 """Free space: which poses and which moves touch nothing, for every node of the lattice at once."""
 
-import os
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Final
 
 import numpy as np
 
@@ -14,8 +12,10 @@ from satAOI_geo.nodes import ONE, Nodes
 from satAOI_geo.plan import BoolArray, IntArray
 from satAOI_geo.robot import Part, Robot
 from satAOI_geo.sweep import carried, turned
+from satAOI_geo.threads import run_threads
 
-Answer = TypeVar("Answer")
+ROUNDING_MM: Final = 0.001
+"""More than all roundings of a sweep together, and far less than matters on a floor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,27 +136,36 @@ class Sweeps:
             from each swing.
         swings: Of the vehicle as it turns about its pivot, in the same order.
         orbits: Of the vehicle as its pivot turns about the disc, its heading kept.
+        rounds: Of a disc that holds all of these, for each direction: a node at which it touches
+            nothing bars no move of the vehicle from this direction, nor a turn of it about its
+            pivot in the next one.
     """
 
     arms: list[Part]
     turns: list[Part]
     swings: list[Part]
     orbits: list[Part]
+    rounds: list[Part]
 
     @classmethod
     def of(cls, robot: Robot, lattice: Lattice) -> "Sweeps":
         """Those of all directions together, which takes little longer than those of one."""
         directions = lattice.directions()
         turn_rad, disc_mm = 2 * np.pi / lattice.n_directions, np.zeros(2)
-        pivots_mm = np.repeat(robot.arm_length_mm * directions, len(lattice.swings), axis=0)
+        pivots_mm = robot.arm_length_mm * directions
+        # by as much farther from the pivot as `turned` sets corners half-way
+        around_mm = robot.vehicle_reach_mm / np.cos(turn_rad / 2) + ROUNDING_MM
+        around = [Part(pivot_mm[np.newaxis], around_mm) for pivot_mm in pivots_mm]
+        of_swings_mm = np.repeat(pivots_mm, len(lattice.swings), axis=0)
         vehicles = [
             vehicle for a1 in range(len(directions)) for vehicle in _vehicles(robot, lattice, a1)
         ]
         return cls(
             turned([robot.capsule(arm) for arm in directions], disc_mm, turn_rad),
             turned(vehicles, disc_mm, turn_rad),
-            turned(vehicles, pivots_mm, turn_rad),
-            carried(vehicles, pivots_mm, turn_rad),
+            turned(vehicles, of_swings_mm, turn_rad),
+            carried(vehicles, of_swings_mm, turn_rad),
+            turned(around, disc_mm, turn_rad),
         )
 
 
@@ -189,29 +198,6 @@ def _vehicles(robot: Robot, lattice: Lattice, a1: int) -> list[Part]:
     directions = lattice.directions()
     headings = (a1 + np.array(lattice.swings)) % lattice.n_directions
     return robot.vehicles(directions[a1], directions[headings])
-
-
-def run_threads(
-    job: Callable[[int], Answer], n_jobs: int, progress: Callable[[float], None] | None = None
-) -> list[Answer]:
-    """The answers of jobs 0 .. n_jobs - 1, a thread per core.
-
-    The kernels release the interpreter's lock. Progress is called with the share that is done.
-    """
-    answers: list[Answer] = []
-    with ThreadPoolExecutor(max_workers=_cores()) as pool:
-        for answer in pool.map(job, range(n_jobs)):
-            answers.append(answer)
-            if progress is not None:
-                progress(len(answers) / n_jobs)
-    return answers
-
-
-def _cores() -> int:
-    """Cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _neighbour(swing: int, n_swings: int, *, ring: bool) -> int | None:

@@ -11,6 +11,7 @@ not bounded.
 
 import mmap
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from tempfile import TemporaryFile
@@ -21,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from satAOI_geo.engine import Engine
-from satAOI_geo.freespace import FreeSpace, Move, Sweeps, moves, run_threads
+from satAOI_geo.freespace import FreeSpace, Move, Sweeps, moves
 from satAOI_geo.lattice import WORD_BITS, Lattice
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.robot import Robot
@@ -34,11 +35,17 @@ from satAOI_geo.runs import (
     roots,
     rows_of,
     unite,
+    unite_poses,
     unite_upwards,
 )
 from satAOI_geo.stretches import Stretches, of_runs
+from satAOI_geo.threads import run_threads
 
 EVERYTHING: Final = slice(None)
+
+OPEN_ROWS: Final = 16
+"""Of so many rows one is looked at for places where nothing is near: hardly any part of the free
+space is lower."""
 
 
 class State(NamedTuple):
@@ -142,9 +149,12 @@ class Band:
             return SliceRuns.of(free.reshape(-1, n_words), barred)
 
         share = _thirds(progress)
-        parts = run_threads(gather, n_directions, share[0])
-        runs = Runs.joined(parts, (n_directions, n_swings, n_rows))
-        joined, sweeps = _Joined(engine, runs), Sweeps.of(robot, lattice)
+        with ThreadPoolExecutor(max_workers=1) as beside:
+            waiting = beside.submit(Sweeps.of, robot, lattice)
+            parts = run_threads(gather, n_directions, share[0])
+            runs = Runs.joined(parts, (n_directions, n_swings, n_rows))
+            sweeps = waiting.result()
+        joined = _Joined(engine, runs, sweeps)
 
         def step_up(a1: int) -> None:
             # no other direction has these runs, so threads need not wait for each other
@@ -156,6 +166,7 @@ class Band:
                 joined.by_move(each)
 
         run_threads(step_up, n_directions, share[1])
+        run_threads(joined.in_the_open, n_directions)
         # runs whose parents are roots are compared quickly
         roots(joined.parents)
         run_threads(move, n_directions, share[2])
@@ -301,11 +312,32 @@ def _ranges(shape: tuple[int, int], rows: slice, columns: slice) -> tuple[range,
 class _Joined:
     """Runs being joined into components, by several threads at once."""
 
-    def __init__(self, engine: Engine, runs: Runs) -> None:
+    def __init__(self, engine: Engine, runs: Runs, sweeps: Sweeps) -> None:
         self.parents = np.arange(runs.begin.size, dtype=np.int32)
         self._engine = engine
         self._runs = runs
+        self._sweeps = sweeps
         self._one_at_a_time = Lock()
+
+    def in_the_open(self, a1: int) -> None:
+        """Join poses of a direction and the next one where nothing is near, in some rows.
+
+        All moves would do so, one by one; most are then spared what their vehicle sweeps.
+        """
+        n_directions, n_swings, n_ends = self._runs.first.shape
+        rows = np.arange(n_ends - 1) % OPEN_ROWS == 0
+        round_free = ~self._engine.blocked(self._sweeps.rounds[a1], rows)
+        arm_turns = ~self._engine.blocked(self._sweeps.arms[a1], rows)
+        to_a1, every = (a1 + 1) % n_directions, slice(n_swings)
+        narrower, wider = slice(n_swings - 1), slice(1, n_swings)
+        joins = [
+            ((a1, every), (to_a1, every), round_free & arm_turns),
+            ((a1, narrower), (a1, wider), round_free),
+            ((to_a1, narrower), (to_a1, wider), round_free),
+        ]
+        with self._one_at_a_time:
+            for poses, to_poses, allowed in joins:
+                unite_poses(self.parents, self._runs, poses, to_poses, allowed, rows)
 
     def by_move(self, move: Move) -> None:
         """Join the runs of two poses that a move leads between.

@@ -136,6 +136,12 @@ class Robot:
         vehicle_mm = self.arm_length_mm + abs(self.pivot_offset_mm) + half_diagonal_mm
         return max(vehicle_mm, self.disc_radius_mm)
 
+    @property
+    def vehicle_reach_mm(self) -> float:
+        """No point of the vehicle is farther than this from the arm pivot."""
+        ahead_mm = abs(self.pivot_offset_mm) + self.vehicle_length_mm / 2
+        return math.hypot(ahead_mm, self.vehicle_width_mm / 2)
+
     def disc(self) -> Part:
         """The disc alone, its centre D at the origin."""
         return Part(np.zeros((1, 2)), self.disc_radius_mm)

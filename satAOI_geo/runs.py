@@ -142,17 +142,13 @@ class Meeting:
         It may start from no other nodes than the allowed ones.
         """
         rows = np.empty(self.first_a.size - 1, dtype=np.bool_)
-        return rows if self._compare(parents, allowed, rows, join=False) else None
+        n = _compare(parents, allowed, self.first_a, self.first_b, self.begin, self.end, rows)
+        return rows if n else None
 
     def join(self, parents: Int32Array, allowed: Words, rows: BoolArray) -> None:
         """Join the runs that a move leads between in some rows, given where it may start from."""
-        self._compare(parents, allowed, rows, join=True)
-
-    def _compare(self, parents: Int32Array, allowed: Words, rows: BoolArray, *, join: bool) -> int:
-        """See the kernel."""
-        return _compare(
-            parents, allowed, self.first_a, self.first_b, self.begin, self.end, rows, join
-        )
+        first_a, first_b = self.first_a[np.newaxis], self.first_b[np.newaxis]
+        _join(parents, allowed, first_a, first_b, self.begin, self.end, rows)
 
 
 def rows_of(nodes: Nodes) -> SliceRuns:
@@ -163,6 +159,28 @@ def rows_of(nodes: Nodes) -> SliceRuns:
 def unite(parents: Int32Array, pairs: Int32Array) -> None:
     """Join pairs, the first two columns of (n, 2 or 3), in the forest `parents`, shape (m,)."""
     _unite(parents, pairs)
+
+
+def unite_poses(
+    parents: Int32Array,
+    runs: Runs,
+    poses: tuple[int, slice],
+    to_poses: tuple[int, slice],
+    allowed: Words,
+    rows: BoolArray,
+) -> None:
+    """Join the runs that moves lead between from some poses of a direction to as many of another.
+
+    Args:
+        parents: The forest, shape (n_runs,).
+        runs: All runs.
+        poses: A direction and some of its swings.
+        to_poses: A direction and, for each of these, the swing that the move leads to.
+        allowed: The nodes that all these moves may start from.
+        rows: Shape (n_rows,), the rows to do it in.
+    """
+    first_a, first_b = runs.first[poses], runs.first[to_poses]
+    _join(parents, allowed, first_a, first_b, runs.begin, runs.end, rows)
 
 
 def unite_upwards(parents: Int32Array, runs: Runs, a1: int, barred: IntArray, n_bits: int) -> None:
@@ -271,7 +289,7 @@ def _links(
 
 @kernel(
     "int64(int32[:], const uint64[:, :], const int64[:], const int64[:], const int32[:], "
-    "const int32[:], bool[:], bool)"
+    "const int32[:], bool[:])"
 )
 def _compare(
     parents: Int32Array,
@@ -281,13 +299,12 @@ def _compare(
     begin: Int32Array,
     end: Int32Array,
     rows: BoolArray,
-    join: bool,  # noqa: FBT001  kernels take no keywords
 ) -> int:
-    """Find the runs of different roots that an allowed move leads between: join, or tell where.
+    """Find the rows with runs of different roots that an allowed move leads between; how many.
 
-    To tell it takes no lock, though others may be changing the forest: a root that is out of date
-    makes two runs look apart that no longer are, never the other way round, and to halve a path
-    changes no root.
+    This takes no lock, though others may be changing the forest: a root that is out of date makes
+    two runs look apart that no longer are, never the other way round, and to halve a path changes
+    no root.
 
     Args:
         parents: The forest.
@@ -296,19 +313,13 @@ def _compare(
         first_b: Of the runs that it leads to.
         begin: Of all runs.
         end: Of all runs.
-        rows: Where runs are joined, the rows to do it in; else room for whether a row has any.
-        join: Whether to join them.
-
-    Returns:
-        How many such pairs were met: all that were joined, or one in each row that has any.
+        rows: Room for whether a row is one of them.
     """
     n = 0
     # the last two parents that were found to have one root, as most neighbouring runs have them
     known_a = known_b = np.int32(-1)
     for iy in range(allowed.shape[0]):
-        if join and not rows[iy]:
-            continue
-        rows[iy] = join
+        rows[iy] = False
         a, b = first_a[iy], first_b[iy]
         a_stop, b_stop = first_a[iy + 1], first_b[iy + 1]
         while a < a_stop and b < b_stop:
@@ -319,16 +330,56 @@ def _compare(
                     if _root(parents, a) == _root(parents, b):
                         known_a, known_b = parent_a, parent_b
                     elif 0 <= _next_bit(allowed[iy], ix) <= last_ix:
+                        rows[iy] = True
                         n += 1
-                        if not join:
-                            rows[iy] = True
-                            break
-                        _unite_two(parents, a, b)
+                        break
             # no branch, which the processor would take wrongly half of the time
             a_ends, b_ends = end[a] <= end[b], end[b] <= end[a]
             a += int(a_ends)
             b += int(b_ends)
     return n
+
+
+@kernel(
+    "void(int32[:], const uint64[:, :], const int64[:, :], const int64[:, :], const int32[:], "
+    "const int32[:], const bool[:])"
+)
+def _join(
+    parents: Int32Array,
+    allowed: Words,
+    first_a: IntArray,
+    first_b: IntArray,
+    begin: Int32Array,
+    end: Int32Array,
+    rows: BoolArray,
+) -> None:
+    """Join every two runs that an allowed move leads between, pose after pose.
+
+    Args:
+        parents: The forest.
+        allowed: The nodes that the moves may start from.
+        first_a: Shape (n_poses, n_rows + 1), for each pose see `Meeting`.
+        first_b: The same of the poses that the moves lead to.
+        begin: Of all runs.
+        end: Of all runs.
+        rows: The rows to do it in.
+    """
+    for pose in range(first_a.shape[0]):
+        for iy in range(allowed.shape[0]):
+            if rows[iy]:
+                a, b = first_a[pose, iy], first_b[pose, iy]
+                while a < first_a[pose, iy + 1] and b < first_b[pose, iy + 1]:
+                    ix, last_ix = max(begin[a], begin[b]), min(end[a], end[b])
+                    if (
+                        ix <= last_ix
+                        and parents[a] != parents[b]
+                        and 0 <= _next_bit(allowed[iy], ix) <= last_ix
+                    ):
+                        _unite_two(parents, a, b)
+                    if end[a] < end[b]:
+                        a += 1
+                    else:
+                        b += 1
 
 
 @kernel("void(int32[:], const int64[:, :], const int32[:], const int32[:], const int64[:], int64)")

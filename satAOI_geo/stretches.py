@@ -5,6 +5,7 @@ a set has, as for the floor that it trowels, a few stretches a row answer it.
 """
 
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,7 @@ from satAOI_geo.lattice import WORD_BITS, Words
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import IntArray
 from satAOI_geo.runs import Int32Array, Runs, lowest_bit, paint
+from satAOI_geo.threads import n_cores, run_threads
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,24 +120,39 @@ def of_runs(
         set's first state in this order, shape (n_sets, 3).
     """
     first = runs.first.reshape(-1, runs.first.shape[-1])
-    n_at_once = min(n_sets, int(np.diff(first, axis=1).sum(axis=0).max(initial=0)))
+    n_a_row = np.diff(first, axis=1).sum(axis=0)
+    n_at_once = min(n_sets, int(n_a_row.max(initial=0)))
     n_words = int(runs.end.max(initial=0)) // WORD_BITS + 1
-    nodes = np.zeros((n_at_once, n_words), dtype=np.uint64)
-    place, met = np.full(n_sets, -1, dtype=np.int32), np.empty(n_at_once, dtype=np.int32)
-    states = np.full((n_sets, 3), -1, dtype=np.int32)
-    # of what there is room for only what is written to takes memory
-    room = np.empty((runs.begin.size, 4), dtype=np.int32)
-    n = _paint_sets(first, labels, runs.begin, runs.end, nodes, place, met, states, room)
-    label, row, begin, end = room[np.argsort(room[:n, 0], kind="stable")].T.copy()
-    return (label, row, begin, end), states
+    cuts = np.linspace(0, n_a_row.size, n_cores() + 1).astype(np.int64)
+
+    def painted(part: int) -> tuple[Int32Array, Int32Array]:
+        low, high = cuts[part], cuts[part + 1]
+        nodes = np.zeros((n_at_once, n_words), dtype=np.uint64)
+        place, met = np.full(n_sets, -1, dtype=np.int32), np.empty(n_at_once, dtype=np.int32)
+        states = np.full((n_sets, 3), -1, dtype=np.int32)
+        # of what there is room for only what is written to takes memory
+        room = np.empty((n_a_row[low:high].sum(), 4), dtype=np.int32)
+        n = _paint_sets(
+            first, low, high, labels, runs.begin, runs.end, nodes, place, met, states, room
+        )
+        return room[:n], states
+
+    stretches, states = zip(*run_threads(painted, cuts.size - 1), strict=True)
+    together = np.concatenate(stretches)
+    label, row, begin, end = together[np.argsort(together[:, 0], kind="stable")].T.copy()
+    # rows ascend from part to part
+    firsts = reduce(lambda low, high: np.where(low < 0, high, low), states)
+    return (label, row, begin, end), firsts
 
 
 @kernel(
-    "int64(const int64[:, :], const int32[:], const int32[:], const int32[:], uint64[:, :], "
-    "int32[:], int32[:], int32[:, :], int32[:, :])"
+    "int64(const int64[:, :], int64, int64, const int32[:], const int32[:], const int32[:], "
+    "uint64[:, :], int32[:], int32[:], int32[:, :], int32[:, :])"
 )
 def _paint_sets(
     first: IntArray,
+    low: int,
+    high: int,
     labels: Int32Array,
     begin: Int32Array,
     end: Int32Array,
@@ -149,6 +166,8 @@ def _paint_sets(
 
     Args:
         first: Shape (n_poses, n_rows + 1), see `Runs`.
+        low: The first of the rows to do it in.
+        high: The row before which to end.
         labels: The set of each run.
         begin: Its first column.
         end: Its last column.
@@ -162,7 +181,7 @@ def _paint_sets(
         How many stretches there are.
     """
     n = 0
-    for row in range(first.shape[1] - 1):
+    for row in range(low, high):
         n_met = 0
         for pose in range(first.shape[0]):
             for run in range(first[pose, row], first[pose, row + 1]):

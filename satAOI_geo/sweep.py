@@ -67,8 +67,9 @@ def _hulls(radius_mm: float, *corners_mm: FloatArray) -> list[Part]:
     # an arm no longer than the disc's radius has no spine: a point that stays or moves straight
     n_repeated = np.where(shapely.get_dimensions(hulls) == 2, 1, 0)
     ends = np.cumsum(shapely.get_num_coordinates(hulls))
-    rings_mm = np.split(shapely.get_coordinates(hulls), ends[:-1])
+    begins, ends = np.concatenate(([0], ends[:-1])), ends - n_repeated
+    rings_mm = shapely.get_coordinates(hulls)
     return [
-        Part(ring_mm[: len(ring_mm) - n], radius_mm)
-        for ring_mm, n in zip(rings_mm, n_repeated.tolist(), strict=True)
+        Part(rings_mm[begin:end], radius_mm)
+        for begin, end in zip(begins.tolist(), ends.tolist(), strict=True)
     ]

@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 from satAOI_adapters import read_plan
 from satAOI_adapters.dxf_read import ReadOptions
 from satAOI_geo.collision import Collider, Reference
-from satAOI_geo.errors import InputError
-from satAOI_geo.freespace import FreeSpace, free_space, run_threads
+from satAOI_geo.freespace import FreeSpace, free_space
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.nodes import Nodes
@@ -293,18 +292,3 @@ def test_free_space_of_an_empty_room_is_what_walls_leave() -> None:
     expected[np.ix_(rows, columns)] = True
     straight = lattice.swings.index(0)
     assert np.array_equal(Nodes(space.words[0, straight], lattice.n_columns).as_array(), expected)
-
-
-def test_threads_do_every_job_once_and_tell_how_far_they_are() -> None:
-    shares: list[float] = []
-    assert run_threads(lambda job: job**2, 50, shares.append) == [job**2 for job in range(50)]
-    assert shares == [k / 50 for k in range(1, 51)]
-
-
-def test_error_in_a_thread_is_raised_to_the_caller() -> None:
-    def refuse(job: int) -> None:
-        if job == 7:
-            raise InputError("job 7")
-
-    with pytest.raises(InputError, match="job 7"):
-        run_threads(refuse, 20)
