@@ -30,7 +30,7 @@ from satAOI_geo.robot import ROBOTS
 from satAOI_geo.zones import set_downs, zones
 
 SAMPLE: Final = Path(__file__).parents[1] / "samples" / "hall_complex.dxf"
-COMMAND: Final = "import sys; from satAOI_geo.cli import main; sys.exit(main())"
+COMMAND: Final = "import sys; from satAOI_geo.program import main; sys.exit(main())"
 
 
 def main() -> None:

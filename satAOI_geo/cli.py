@@ -1,4 +1,4 @@
-"""satAOI-geo: parse, call, print, exit code.
+"""The commands of satAOI-geo: parse, call, print, exit code.
 
 Data goes to standard output, talk to standard error. What a command needs is imported when it
 runs, so that `--help` answers at once.
@@ -6,7 +6,7 @@ runs, so that `--help` answers at once.
 
 import math
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Unpack
@@ -14,14 +14,7 @@ from typing import TYPE_CHECKING, Final, Unpack
 import rich_click as click
 
 from satAOI_geo import __version__
-from satAOI_geo.errors import (
-    DrawingError,
-    InputError,
-    LimitError,
-    NoRouteError,
-    SatAoiError,
-    StartError,
-)
+from satAOI_geo.errors import InputError, NoRouteError
 from satAOI_geo.options import (
     AT,
     BATCH,
@@ -75,14 +68,6 @@ if TYPE_CHECKING:
 
 DONE: Final = 0
 FINDINGS: Final = 1
-USAGE: Final = 2
-INTERRUPTED: Final = 130
-EXIT_CODES: Final[dict[type[SatAoiError], int]] = {
-    InputError: USAGE,
-    DrawingError: 3,
-    StartError: 4,
-    LimitError: 5,
-}
 
 EPILOG: Final = (
     "Exit codes: 0 done; 1 findings, with --strict; 2 usage; 3 drawing unusable; "
@@ -93,37 +78,6 @@ BATCH_EPILOG: Final = (
     "Exit code: 0 when every plan is done, else that of the first plan in the table that is not; "
     "128 + N for a run that signal N ended."
 )
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the program and return its exit code; a known error becomes one line of talk."""
-    from satAOI_adapters import linear_algebra, put_off
-    from satAOI_adapters.collector import leave_at_once, look_seldom
-    from satAOI_adapters.terminal import accept_any_text, say_error
-
-    accept_any_text()
-    look_seldom()
-    leave_at_once()
-    linear_algebra.without_threads()
-    put_off.until_used()
-    try:
-        code = commands.main(arguments, prog_name="satAOI-geo", standalone_mode=False)
-        return int(code or DONE)
-    except click.ClickException as error:
-        say_error(error.format_message())
-        return error.exit_code
-    except SatAoiError as error:
-        say_error(str(error))
-        return next(code for sort, code in EXIT_CODES.items() if isinstance(error, sort))
-    except OSError as error:
-        say_error(f"{error.filename or 'input or output'}: {error.strerror}")
-        return USAGE
-    except MemoryError:
-        say_error("not enough memory for this plan; give a coarser --step or a smaller --region")
-        return EXIT_CODES[LimitError]
-    except (click.Abort, KeyboardInterrupt):
-        say_error("interrupted")
-        return INTERRUPTED
 
 
 class DefaultRun(click.RichGroup):

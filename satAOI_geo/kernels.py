@@ -28,7 +28,7 @@ from typing import Any, Final, Generic, ParamSpec, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from satAOI_geo import bitcode
+from satAOI_geo import bitcode, kept
 from satAOI_geo.machine_code import (
     Function,
     Parameter,
@@ -54,8 +54,6 @@ KERNELS: Final[list["Kernel[..., Any]"]] = []
 
 N_KEPT: Final = 5
 """For so many states of a kernel's source, since several copies of the program may be in use."""
-
-_DIGEST_BYTES: Final = 32
 
 _one_at_a_time = Lock()
 """Threads that need a kernel at the same time make it ready once."""
@@ -146,15 +144,16 @@ class Kernel(Generic[P, R]):
 
     def _loaded(self) -> int | None:
         """The address of kept machine code."""
-        kept = _read(self._path())
-        return None if kept is None else loaded(self._name, kept)
+        machine_code = kept.read(self._path())
+        return None if machine_code is None else loaded(self._name, machine_code)
 
     def _made_of(self, of: bytes | None) -> int | None:
         """The address of machine code made of bitcode, which is kept where that is possible."""
         made = None if of is None else object_file(of, self._name)
         if made is None:
             return None
-        _keep(self._path(), made)
+        kept.write(self._path(), made)
+        _forget_outdated(self._path())
         return loaded(self._name, made)
 
     def _made_by_numba(self) -> int:
@@ -236,29 +235,11 @@ def _digest(*parts: object) -> str:
     return hashlib.sha256("\n".join(map(str, parts)).encode()).hexdigest()[:12]
 
 
-def _read(path: str) -> bytes | None:
-    """A file that was kept; None where there is none, or it has come to harm."""
-    try:
-        with open(path, "rb") as file:
-            digest, content = file.read(_DIGEST_BYTES), file.read()
-    except OSError:
-        return None
-    return content if hashlib.sha256(content).digest() == digest else None
-
-
-def _keep(path: str, content: bytes) -> None:
-    """Keep a file, if it can be written, and the newest of the same from other sources.
-
-    Processes may do so at the same time; each writes a file of its own and renames it.
-    """
+def _forget_outdated(path: str) -> None:
+    """Remove machine code of the same kernel from other sources, but for the newest."""
     folder, name = os.path.split(path)
-    unfinished = f"{path}.{os.getpid()}"
+    of_this_machine = f"{name.rsplit('-', 1)[0]}-"
     with suppress(OSError):
-        os.makedirs(folder, exist_ok=True)
-        with open(unfinished, "wb") as file:
-            file.write(hashlib.sha256(content).digest() + content)
-        os.replace(unfinished, path)
-        of_this_machine = f"{name.rsplit('-', 1)[0]}-"
         same = [entry for entry in os.scandir(folder) if entry.name.startswith(of_this_machine)]
         for outdated in sorted(same, key=lambda entry: -entry.stat().st_mtime)[N_KEPT:]:
             os.remove(outdated.path)

@@ -9,14 +9,14 @@ from pathlib import Path
 import ezdxf
 import pytest
 
-from satAOI_geo.cli import main
+from satAOI_geo.program import main
 
 ROOT = Path(__file__).parents[1]
 
 START = """
 import sys
 sys.path[:0] = sys.argv.pop(1).split("|")
-from satAOI_geo.cli import main
+from satAOI_geo.program import main
 sys.exit(main())
 """
 """The program for `python -c`; its first argument says where it lies."""

@@ -4,11 +4,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 import ifcopenshell
 from ifcopenshell import entity_instance
 
 Point = Sequence[float]
+Schema = Literal["IFC2X3", "IFC4", "IFC4X3"]
 
 PREFIX = {"mm": "MILLI", "m": None}
 PER_MM = {"mm": 1.0, "m": 0.001}
@@ -19,11 +21,11 @@ class Pen:
     """Writes entities; all lengths are given in mm, whatever the model's unit.
 
     Attributes:
-        schema: IFC2X3, IFC4 or IFC4X3.
+        schema: The edition of IFC.
         unit: `mm` or `m`.
     """
 
-    schema: str = "IFC4"
+    schema: Schema = "IFC4"
     unit: str = "mm"
     model: ifcopenshell.file = field(init=False)
     project: entity_instance = field(init=False)

@@ -11,9 +11,9 @@ import pytest
 
 from satAOI_adapters.cluster import Workers, workers
 from satAOI_geo.bands import BandTask, Explored, Outcome
-from satAOI_geo.cli import main
 from satAOI_geo.errors import InputError, LimitError
 from satAOI_geo.pipeline import Result, area_of_interest
+from satAOI_geo.program import main
 from satAOI_geo.route import RouteMap
 from satAOI_geo.settings import Settings
 from tests import cluster_jobs as jobs

@@ -16,8 +16,8 @@ import pytest
 from satAOI_adapters import batch
 from satAOI_adapters.batch_results import Row, earlier_rows
 from satAOI_adapters.cluster import InTurn, Outcome, workers
-from satAOI_geo.cli import main
 from satAOI_geo.errors import InputError, LimitError
+from satAOI_geo.program import main
 from tests.command_line import drawn_room, the_error
 
 COARSE = ["--step", "100", "--directions", "8"]

@@ -9,7 +9,7 @@ import ezdxf
 import pytest
 
 from satAOI_adapters import terminal
-from satAOI_geo.cli import main
+from satAOI_geo.program import main
 from satAOI_geo.progress import Progress
 from tests.command_line import ROOT, drawn_room, figures, the_error
 from tests.ifc_models import Pen

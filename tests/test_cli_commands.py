@@ -9,7 +9,8 @@ import pytest
 import rich_click as click
 
 import satAOI_geo
-from satAOI_geo.cli import commands, main
+from satAOI_geo.cli import commands
+from satAOI_geo.program import main
 from tests.command_line import ROOT, drawn_room, figures, the_error
 
 OPTIONS = [
@@ -33,7 +34,7 @@ def test_no_argument_at_all_shows_the_help(capsys: pytest.CaptureFixture[str]) -
 def test_help_starts_none_of_the_heavy_libraries() -> None:
     heavy = ("numpy", "scipy", "shapely", "numba", "ezdxf", "ifcopenshell", "pydantic", "PIL")
     code = (
-        "import sys; from satAOI_geo.cli import main; main(['--help']); "
+        "import sys; from satAOI_geo.program import main; main(['--help']); "
         f"print('loaded:', *(name for name in {heavy} if name in sys.modules))"
     )
     done = subprocess.run(
@@ -49,7 +50,7 @@ def test_help_starts_none_of_the_heavy_libraries() -> None:
 def test_a_run_loads_nothing_that_only_other_plans_robots_and_outputs_need(room: Path) -> None:
     others = ("pydantic", "ifcopenshell", "trimesh", "PIL", "rich.console", "distributed")
     code = (
-        f"import sys; from satAOI_geo.cli import main; main([{str(room)!r}]); "
+        f"import sys; from satAOI_geo.program import main; main([{str(room)!r}]); "
         f"print('loaded:', *(name for name in {others} if name in sys.modules))"
     )
     done = subprocess.run(

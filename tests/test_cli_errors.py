@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from satAOI_geo import pipeline
-from satAOI_geo.cli import main
+from satAOI_geo.program import main
 from tests.command_line import drawn_room, program, the_error
 
 

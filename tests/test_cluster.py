@@ -190,7 +190,7 @@ def test_an_interrupt_is_one_line_and_leaves_no_process(busy_s: float) -> None:
 def test_workers_need_dask(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from satAOI_geo.cli import main
+    from satAOI_geo.program import main
 
     monkeypatch.setitem(sys.modules, "distributed", None)
     for option in (["--workers", "2"], ["--scheduler", "tcp://127.0.0.1:1"]):

@@ -8,13 +8,14 @@ from typing import TypeAlias
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from satAOI_adapters import read_plan
 from satAOI_adapters.dxf_read import ReadOptions
 from satAOI_geo.collision import Collider, Reference
-from satAOI_geo.freespace import FreeSpace, free_space
+from satAOI_geo.freespace import FreeSpace, Sweeps, free_space
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.nodes import Nodes
@@ -292,3 +293,22 @@ def test_free_space_of_an_empty_room_is_what_walls_leave() -> None:
     expected[np.ix_(rows, columns)] = True
     straight = lattice.swings.index(0)
     assert np.array_equal(Nodes(space.words[0, straight], lattice.n_columns).as_array(), expected)
+
+
+@given(drawn.robots(), st.sampled_from([4, 8, 12, 24]))
+def test_the_disc_about_the_vehicle_holds_all_that_it_sweeps(
+    robot: Robot, n_directions: int
+) -> None:
+    lattice = Lattice.over((0.0, 0.0, 100.0, 100.0), robot, n_directions=n_directions)
+    sweeps, n_swings = Sweeps.of(robot, lattice), len(lattice.swings)
+    for a1, disc in enumerate(sweeps.rounds):
+        here = slice(a1 * n_swings, (a1 + 1) * n_swings)
+        next_a1 = (a1 + 1) % n_directions
+        there = slice(next_a1 * n_swings, (next_a1 + 1) * n_swings)
+        swept = [*sweeps.turns[here], *sweeps.orbits[here]]
+        swept += [*sweeps.swings[here], *sweeps.swings[there]]
+        corners = shapely.points(np.concatenate([part.corners_mm for part in swept]))
+        core = shapely.MultiPoint(disc.corners_mm).convex_hull
+        # the parts are convex and have no radius of their own
+        assert {part.radius_mm for part in swept} == {0.0}
+        assert shapely.distance(corners, core).max() < disc.radius_mm

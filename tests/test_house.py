@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 import satAOI_geo
-from satAOI_geo.cli import EXIT_CODES, commands
+from satAOI_geo.cli import commands
+from satAOI_geo.program import EXIT_CODES
 
 ROOT = Path(__file__).parents[1]
 CORE = ROOT / "satAOI_geo"

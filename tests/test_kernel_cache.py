@@ -8,8 +8,8 @@ import pytest
 
 from satAOI_adapters import kernel_cache
 from satAOI_adapters.kernel_cache import VARIABLE, are_compiled, prepare
-from satAOI_geo.cli import main
 from satAOI_geo.kernels import KERNELS
+from satAOI_geo.program import main
 from tests.command_line import drawn_room
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the folders of Linux")

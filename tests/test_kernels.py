@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from satAOI_geo import bitcode, kernels
+from satAOI_geo.kept import read
 from satAOI_geo.kernels import KERNELS, N_KEPT, VARIABLE, Kernel, filled, helper, kernel
 from satAOI_geo.machine_code import machine, object_file, target_machine
 from satAOI_geo.plan import FloatArray, IntArray
@@ -91,7 +92,7 @@ def test_machine_code_that_came_to_harm_is_made_anew(folder: Path, harm: bytes |
     harmed = whole[:-1] if harm is None else harm
     kept.write_bytes(harmed)
     assert of(total, WEIGHTED)(COLUMNS, TABLE, 0.7, 1) == total(COLUMNS, TABLE, 0.7, 1)
-    assert kernels._read(str(kept)) is not None
+    assert read(str(kept)) is not None
 
 
 def test_machine_code_of_changed_sources_makes_room_for_new(
@@ -246,7 +247,7 @@ def test_bitcode_that_comes_with_the_program_knows_no_processor_and_no_folder() 
 def test_the_program_runs_without_numba(tmp_path: Path, folder: Path) -> None:
     plan = drawn_room(tmp_path / "room.dxf")
     code = (
-        "import sys; from satAOI_geo.cli import main; "
+        "import sys; from satAOI_geo.program import main; "
         f"assert not main([{str(plan)!r}, '-o', {str(tmp_path / 'aoi.dxf')!r}, '--quiet']); "
         "print('loaded:', *(name for name in ('numba', 'llvmlite') if name in sys.modules))"
     )

@@ -14,7 +14,7 @@ from tests.command_line import ROOT
 def test_where_the_command_line_loads_numpy_it_has_the_threads_of_python_and_no_more() -> None:
     code = (
         "import os, sys, threading; sys.path[:0] = ['.', 'adapters']; "
-        "from satAOI_geo.cli import main; main(['robots']); import numpy; "
+        "from satAOI_geo.program import main; main(['robots']); import numpy; "
         "print(threading.active_count(), len(os.listdir('/proc/self/task')))"
     )
     done = subprocess.run(

@@ -35,7 +35,7 @@ def said(code: str) -> str:
 def test_a_run_that_reads_and_writes_a_drawing_loads_none_of_them(tmp_path: Path) -> None:
     plan, output = drawn_room(tmp_path / "room.dxf"), tmp_path / "aoi.dxf"
     code = (
-        "from satAOI_geo.cli import main\n"
+        "from satAOI_geo.program import main\n"
         f"main([{str(plan)!r}, '-o', {str(output)!r}, '--quiet'])\n"
         "parts = ('pyparsing.core', 'fontTools', 'fontTools.ttLib.ttFont')\n"
         "print('ezdxf' in sys.modules, *(name for name in parts if name in sys.modules))\n"

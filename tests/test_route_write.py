@@ -22,12 +22,12 @@ from satAOI_adapters.dxf_write.route import capsule_outline, shown, turned_rad, 
 from satAOI_adapters.files import json_of
 from satAOI_adapters.route_write import RouteFigures, n_moves
 from satAOI_geo.aoi import Loop
-from satAOI_geo.cli import main
 from satAOI_geo.collision import Collider
 from satAOI_geo.errors import InputError
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import FloorPlan
+from satAOI_geo.program import main
 from satAOI_geo.reach import State
 from satAOI_geo.robot import PROTOTYPE, Pose
 from satAOI_geo.route import MoveKind, Route, RouteMap
@@ -353,7 +353,7 @@ def at(x: float, y: float) -> str:
 def test_two_runs_write_the_same_bytes(hall: Path, tmp_path: Path) -> None:
     for seed in ("1", "2"):
         (tmp_path / seed).mkdir()
-        code = "import sys; from satAOI_geo.cli import main; sys.exit(main(sys.argv[1:]))"
+        code = "import sys; from satAOI_geo.program import main; sys.exit(main(sys.argv[1:]))"
         drawing, poses = (str(tmp_path / seed / name) for name in ("route.dxf", "route.json"))
         asked = ["route", str(hall), "--to", at(6.8, 4.5), *COARSE, "-o", drawing, "-o", poses]
         path = os.pathsep.join((str(ROOT), str(ROOT / "adapters")))

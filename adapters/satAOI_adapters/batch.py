@@ -28,7 +28,7 @@ from satAOI_geo.errors import InputError, LimitError
 PROGRAM: Final = f"""
 import sys
 from {__name__} import end_with_the_caller
-from satAOI_geo.cli import main
+from satAOI_geo.program import main
 end_with_the_caller()
 sys.exit(main())
 """

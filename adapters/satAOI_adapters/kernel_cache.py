@@ -20,6 +20,14 @@ def prepare() -> None:
         os.environ[VARIABLE] = str(_own_folder())
 
 
+def place() -> Path | None:
+    """Where they are kept, or would be; None where there is no place that lasts."""
+    try:
+        return Path(os.environ[VARIABLE]) if VARIABLE in os.environ else _users_folder()
+    except RuntimeError:
+        return None
+
+
 def are_compiled() -> bool:
     """Whether all kernels are in the folder, none to be compiled."""
     # it imports the modules that have kernels
@@ -35,7 +43,7 @@ def _own_folder() -> Path:
     A shared name in the folder for temporary files would let others slip their code in.
     """
     try:
-        folder = _user_caches() / "satAOI-geo" / f"kernels-{satAOI_geo.__version__}"
+        folder = _users_folder()
         folder.mkdir(parents=True, exist_ok=True)
         if os.access(folder, os.W_OK):
             return folder
@@ -45,6 +53,15 @@ def _own_folder() -> Path:
     folder = Path(tempfile.mkdtemp(prefix="satAOI-geo-"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
+
+
+def _users_folder() -> Path:
+    """The user's folder for these kernels.
+
+    Raises:
+        RuntimeError: If the user has no home.
+    """
+    return _user_caches() / "satAOI-geo" / f"kernels-{satAOI_geo.__version__}"
 
 
 def _user_caches() -> Path:

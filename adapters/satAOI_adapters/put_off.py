@@ -1,10 +1,11 @@
-"""Modules that ezdxf loads at once and hardly ever uses, put off until they are used.
+"""Modules that libraries load at once and hardly ever use, put off until they are used.
 
 ezdxf reads queries, such as `LINE[layer=="A-WALL"]`, with pyparsing, and typefaces with fontTools;
-it works out all patterns of hatches and can measure texts as a CAD program sets them. This program
-asks for none of these, and they are more than a tenth of all that a run loads. So something stands
-in for what ezdxf takes from them. Where that is used after all, or anything else of them is asked
-for, the module is loaded and everything is as ever.
+it works out all patterns of hatches and can measure texts as a CAD program sets them. numpy writes
+the help texts of its functions in C. This program asks for none of these, and they are more than a
+tenth of all that a run loads. So something stands in for what the libraries take from them. Where
+that is used after all, or anything else of them is asked for, the module is loaded and everything
+is as ever; but nothing asks for numpy's help texts, which are missing as in `python -OO`.
 """
 
 import sys
@@ -20,8 +21,10 @@ TAKEN: Final = {
     "fontTools.ttLib": ("ezdxf.fonts.font_manager", ["TTFont", "TTLibError"]),
     "ezdxf.tools.pattern": ("ezdxf.entities.pattern", []),
     "ezdxf.tools.text_size": ("ezdxf.render.mleader", []),
+    "numpy._core._add_newdocs": ("numpy._core", []),
+    "numpy._core._add_newdocs_scalars": ("numpy._core", []),
 }
-"""Module that is put off, to one of ezdxf that takes it, or parts of it, and which parts."""
+"""Module that is put off, to the one that takes it, or parts of it, and which parts."""
 
 _one_at_a_time = Lock()
 
@@ -70,7 +73,7 @@ class _Later:
 
 
 def _loaded(module: str) -> ModuleType:
-    """The module itself, from now on also where ezdxf has what stood in for parts of it."""
+    """The module itself, from now on also where something stood in for parts of it."""
     with _one_at_a_time:
         stand_in = sys.modules.get(module)
         if isinstance(stand_in, _StandIn):

@@ -1,0 +1,57 @@
+"""satAOI-geo: made ready, run, and its errors turned into lines and exit codes."""
+
+from collections.abc import Sequence
+from typing import Final
+
+from satAOI_adapters import class_code, linear_algebra, put_off
+from satAOI_adapters.collector import leave_at_once, look_seldom
+from satAOI_geo.errors import DrawingError, InputError, LimitError, SatAoiError, StartError
+
+DONE: Final = 0
+USAGE: Final = 2
+INTERRUPTED: Final = 130
+EXIT_CODES: Final[dict[type[SatAoiError], int]] = {
+    InputError: USAGE,
+    DrawingError: 3,
+    StartError: 4,
+    LimitError: 5,
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the program and return its exit code; a known error becomes one line of talk."""
+    make_ready()
+    # what comes with them is loaded after that
+    import rich_click as click
+
+    from satAOI_adapters.terminal import accept_any_text, say_error
+    from satAOI_geo.cli import commands
+
+    accept_any_text()
+    try:
+        code = commands.main(arguments, prog_name="satAOI-geo", standalone_mode=False)
+        return int(code or DONE)
+    except click.ClickException as error:
+        say_error(error.format_message())
+        return error.exit_code
+    except SatAoiError as error:
+        say_error(str(error))
+        return next(code for sort, code in EXIT_CODES.items() if isinstance(error, sort))
+    except OSError as error:
+        say_error(f"{error.filename or 'input or output'}: {error.strerror}")
+        return USAGE
+    except MemoryError:
+        say_error("not enough memory for this plan; give a coarser --step or a smaller --region")
+        return EXIT_CODES[LimitError]
+    except (click.Abort, KeyboardInterrupt):
+        say_error("interrupted")
+        return INTERRUPTED
+
+
+def make_ready() -> None:
+    """Let the libraries load quickly and take little."""
+    look_seldom()
+    leave_at_once()
+    linear_algebra.without_threads()
+    put_off.until_used()
+    class_code.use_kept()
