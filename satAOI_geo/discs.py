@@ -97,7 +97,8 @@ def boundary(reached: Nodes, radius: float) -> Arcs:
     coarser than that, every node counts as exposed.
     """
     is_fine = 2 * radius * radius > 1 + TIE
-    side = math.ceil(radius)
+    # smaller squares let fewer nodes be looked at that are not near, but are more to go through
+    side = math.ceil(radius / 3)
     nodes, first = _sorted(_exposed(reached) if is_fine else reached, side)
     beside, n_beside = _beside_neighbours(radius)
     # each disc looked at parts one gap in two at most
@@ -364,8 +365,12 @@ def _cut_by_exposed(
     for row in range(low, high):
         for node in range(first[row, begin], first[row, end]):
             node_x, node_y = nodes[node, 0], nodes[node, 1]
-            if (node_x - middle_x) ** 2 + (node_y - middle_y) ** 2 <= square:
-                n = _cut(gaps, n, node_x - x, node_y - y, radius)
+            dx, dy = node_x - x, node_y - y
+            # what its neighbours leave is what is asked about
+            is_beside = -1 <= dx <= 1 and -1 <= dy <= 1
+            away = (node_x - middle_x) ** 2 + (node_y - middle_y) ** 2
+            if away <= square and not is_beside:
+                n = _cut(gaps, n, dx, dy, radius)
                 if n == 0:
                     return 0
     return n
