@@ -19,9 +19,9 @@ import numpy as np
 from satAOI_geo.intervals import set_bits
 from satAOI_geo.kernels import filled, helper, kernel
 from satAOI_geo.lattice import Words
-from satAOI_geo.nodes import Nodes, from_above, from_below, from_left, from_right
+from satAOI_geo.nodes import Nodes, from_above, from_below, from_left, from_right, lowest_bit
 from satAOI_geo.plan import BoolArray, FloatArray, IntArray
-from satAOI_geo.runs import lowest_bit, rows_of
+from satAOI_geo.runs import rows_of
 
 TIE = 1e-12
 """Share of a squared radius within which a squared distance counts as equal to it: far more than

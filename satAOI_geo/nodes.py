@@ -95,3 +95,9 @@ def n_bits(bits: np.uint64) -> int:
     )
     bits = bits + (bits >> np.uint64(4)) & np.uint64(0x0F0F0F0F0F0F0F0F)
     return int(bits * np.uint64(0x0101010101010101) >> np.uint64(56))
+
+
+@helper
+def lowest_bit(bits: np.uint64) -> int:
+    """Number of the lowest set bit: how many lie below it."""
+    return n_bits((bits & (~bits + np.uint64(1))) - np.uint64(1))

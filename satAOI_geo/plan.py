@@ -20,6 +20,7 @@ from shapely.geometry.base import BaseGeometry
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
 IntArray: TypeAlias = npt.NDArray[np.int64]
+Int32Array: TypeAlias = npt.NDArray[np.int32]
 Region: TypeAlias = Polygon | MultiPolygon
 AnyGeometry = TypeVar("AnyGeometry", bound=BaseGeometry)
 

@@ -22,22 +22,14 @@ import numpy as np
 import numpy.typing as npt
 
 from satAOI_geo.engine import Engine
+from satAOI_geo.forest import numbered, roots, unite
 from satAOI_geo.freespace import FreeSpace, Move, Sweeps, moves
 from satAOI_geo.lattice import WORD_BITS, Lattice
+from satAOI_geo.meeting import Meeting, unite_poses, unite_upwards
 from satAOI_geo.nodes import Nodes
+from satAOI_geo.plan import Int32Array
 from satAOI_geo.robot import Robot
-from satAOI_geo.runs import (
-    Int32Array,
-    Meeting,
-    Runs,
-    SliceRuns,
-    numbered,
-    roots,
-    rows_of,
-    unite,
-    unite_poses,
-    unite_upwards,
-)
+from satAOI_geo.runs import Runs, SliceRuns, rows_of
 from satAOI_geo.stretches import Stretches, of_runs
 from satAOI_geo.threads import run_threads
 

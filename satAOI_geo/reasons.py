@@ -25,11 +25,11 @@ from shapely.geometry import Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from satAOI_geo.aoi import Aoi, outlines_of
+from satAOI_geo.forest import roots, unite
 from satAOI_geo.memory import give_back
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import FloorPlan, IntArray, Obstacle, Region, as_region, polygons_in
 from satAOI_geo.reach import EVERYTHING
-from satAOI_geo.runs import roots, unite
 from satAOI_geo.search import Search
 from satAOI_geo.threads import run_threads
 from satAOI_geo.tiles import FreeFloor, Indexed, Tile, clipped, cuts, region_of

@@ -18,9 +18,9 @@ from scipy.sparse.csgraph import breadth_first_order
 from satAOI_geo.errors import LimitError, NoRouteError
 from satAOI_geo.freespace import Sweeps, free_space, moves
 from satAOI_geo.lattice import Lattice
+from satAOI_geo.meeting import Meeting
 from satAOI_geo.reach import State
 from satAOI_geo.robot import Pose
-from satAOI_geo.runs import Meeting
 from satAOI_geo.search import Search
 from satAOI_geo.threads import run_threads
 

@@ -14,9 +14,8 @@ from satAOI_geo.kernels import helper, kernel
 from satAOI_geo.lattice import WORD_BITS, Lattice, Words
 from satAOI_geo.memory import give_back
 from satAOI_geo.nodes import Nodes, n_bits
-from satAOI_geo.plan import FloatArray, IntArray
+from satAOI_geo.plan import FloatArray, Int32Array, IntArray
 from satAOI_geo.reach import PoseComponents, State
-from satAOI_geo.runs import Int32Array
 
 ZONE_MM2: Final = 500_000.0
 """Smaller zones are not worth a set-down: half a square metre is little more than one disc."""
