@@ -37,12 +37,13 @@ def test_a_run_that_reads_and_writes_a_drawing_loads_none_of_them(tmp_path: Path
     code = (
         "from satAOI_geo.program import main\n"
         f"main([{str(plan)!r}, '-o', {str(output)!r}, '--quiet'])\n"
-        "parts = ('pyparsing.core', 'fontTools', 'fontTools.ttLib.ttFont')\n"
+        "parts = ('pyparsing.core', 'fontTools.ttLib.ttFont', 'xml.etree.ElementPath')\n"
         "print('ezdxf' in sys.modules, *(name for name in parts if name in sys.modules))\n"
-        "own = {'pattern': 'ISO_PATTERN', 'text_size': 'mtext_size'}.items()\n"
-        "print(*(name in vars(sys.modules[f'ezdxf.tools.{part}']) for part, name in own))"
+        "own = {'ezdxf.tools.pattern': 'ISO_PATTERN', 'ezdxf.tools.text_size': 'mtext_size', "
+        "'ezdxf.fonts.shapefile': 'readfile', 'numpy._core._add_newdocs': 'add_newdoc'}.items()\n"
+        "print(*(name in vars(sys.modules[module]) for module, name in own))"
     )
-    assert said(code) == "True\nFalse False\n"
+    assert said(code) == "True\nFalse False False False\n"
 
 
 @pytest.mark.parametrize(
@@ -93,6 +94,25 @@ def test_a_run_that_reads_and_writes_a_drawing_loads_none_of_them(tmp_path: Path
             "from ezdxf.tools import pattern, text_size\n"
             "print(pattern.load(factor=2.0)['ANSI31'], text_size.__name__)",
             id="modules of ezdxf's own",
+        ),
+        pytest.param(
+            "from ezdxf.fonts import shapefile, lff\n"
+            "print(lff.loads('# Name: plain').name)\n"
+            "print(shapefile.shp_load(b'*0,4,FONT\\n21,7,0,0\\n').name)",
+            id="fonts of strokes",
+        ),
+        pytest.param(
+            "from xml.etree import ElementTree; import xml.etree.ElementTree as other\n"
+            "from xml.etree.ElementTree import ParseError\n"
+            "print(ElementTree.fromstring('<a b=\"1\"/>').attrib)\n"
+            "print(other.tostring(other.Element('c')), ParseError.__name__)\n"
+            "data = space.new_geodata(); data.coordinate_system_definition = '<a'\n"
+            "data.get_crs()",
+            id="a place on the globe",
+        ),
+        pytest.param(
+            "import numpy, numpy.ma, scipy.spatial; print(numpy.ma.masked_equal([1, 2], 2))",
+            id="libraries on numpy",
         ),
         pytest.param(IN_THREADS, id="threads"),
     ],

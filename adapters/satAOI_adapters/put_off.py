@@ -1,9 +1,10 @@
 """Modules that libraries load at once and hardly ever use, put off until they are used.
 
-ezdxf reads queries, such as `LINE[layer=="A-WALL"]`, with pyparsing, and typefaces with fontTools;
-it works out all patterns of hatches and can measure texts as a CAD program sets them. numpy writes
-the help texts of its functions in C. This program asks for none of these, and they are more than a
-tenth of all that a run loads. So something stands in for what the libraries take from them. Where
+ezdxf reads queries, such as `LINE[layer=="A-WALL"]`, with pyparsing, typefaces with fontTools and
+places on the globe with ElementTree; it reads the stroke fonts of CAD programs, works out all
+patterns of hatches and can measure texts as such a program sets them. numpy writes the help texts
+of its functions in C. This program asks for none of these, and they are more than a tenth of all
+that a run loads. So something stands in for what the libraries take from them. Where
 that is used after all, or anything else of them is asked for, the module is loaded and everything
 is as ever; but nothing asks for numpy's help texts, which are missing as in `python -OO`.
 """
@@ -19,8 +20,11 @@ TAKEN: Final = {
     "ezdxf.queryparser": ("ezdxf.query", ["EntityQueryParser"]),
     "pyparsing": ("ezdxf.sections.blocks", ["ParseException"]),
     "fontTools.ttLib": ("ezdxf.fonts.font_manager", ["TTFont", "TTLibError"]),
+    "ezdxf.fonts.shapefile": ("ezdxf.fonts.font_manager", []),
+    "ezdxf.fonts.lff": ("ezdxf.fonts.font_manager", []),
     "ezdxf.tools.pattern": ("ezdxf.entities.pattern", []),
     "ezdxf.tools.text_size": ("ezdxf.render.mleader", []),
+    "xml.etree.ElementTree": ("ezdxf.entities.geodata", []),
     "numpy._core._add_newdocs": ("numpy._core", []),
     "numpy._core._add_newdocs_scalars": ("numpy._core", []),
 }
