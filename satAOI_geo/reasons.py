@@ -113,7 +113,8 @@ def unreached(
     obstacles = [obstacle.region() for obstacle in found.plan.obstacles]
     blockers = _Blockers(found.plan, obstacles)
     free = FreeFloor(found.plan.floor, obstacles)
-    whole = _Regions(free, Indexed(aoi.outlines), Indexed(upper.outlines))
+    own = Indexed(aoi.outlines)
+    whole = _Regions(free, own, own if upper is aoi else Indexed(upper.outlines))
     patches: list[Patch] = []
     narrow: list[Patch] = []
     unfinished: list[_Piece] = []
