@@ -5,6 +5,7 @@ from typing import Final
 
 from satAOI_adapters import class_code, linear_algebra, put_off
 from satAOI_adapters.collector import leave_at_once, look_seldom
+from satAOI_adapters.terminal import accept_any_text, say_error
 from satAOI_geo.errors import DrawingError, InputError, LimitError, SatAoiError, StartError
 
 DONE: Final = 0
@@ -20,20 +21,9 @@ EXIT_CODES: Final[dict[type[SatAoiError], int]] = {
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the program and return its exit code; a known error becomes one line of talk."""
-    make_ready()
-    # what comes with them is loaded after that
-    import rich_click as click
-
-    from satAOI_adapters.terminal import accept_any_text, say_error
-    from satAOI_geo.cli import commands
-
-    accept_any_text()
     try:
-        code = commands.main(arguments, prog_name="satAOI-geo", standalone_mode=False)
-        return int(code or DONE)
-    except click.ClickException as error:
-        say_error(error.format_message())
-        return error.exit_code
+        make_ready()
+        return run(arguments)
     except SatAoiError as error:
         say_error(str(error))
         return next(code for sort, code in EXIT_CODES.items() if isinstance(error, sort))
@@ -43,13 +33,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except MemoryError:
         say_error("not enough memory for this plan; give a coarser --step or a smaller --region")
         return EXIT_CODES[LimitError]
-    except (click.Abort, KeyboardInterrupt):
+    except KeyboardInterrupt:
         say_error("interrupted")
         return INTERRUPTED
 
 
+def run(arguments: Sequence[str] | None) -> int:
+    """Run the command that the arguments name and return its exit code."""
+    # they load much, which is quicker once all is made ready
+    import rich_click as click
+
+    from satAOI_geo.cli import commands
+
+    try:
+        code = commands.main(arguments, prog_name="satAOI-geo", standalone_mode=False)
+        return int(code or DONE)
+    except click.ClickException as error:
+        say_error(error.format_message())
+        return error.exit_code
+    except click.Abort as abort:
+        raise KeyboardInterrupt from abort
+
+
 def make_ready() -> None:
-    """Let the libraries load quickly and take little."""
+    """Let the libraries load quickly and take little, and let any text be printed."""
+    accept_any_text()
     look_seldom()
     leave_at_once()
     linear_algebra.without_threads()

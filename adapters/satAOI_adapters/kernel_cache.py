@@ -1,4 +1,7 @@
-"""Where compiled kernels are kept between runs: one folder a user and version of the program."""
+"""Where compiled kernels are kept between runs: one folder a user and version of the program.
+
+What Python compiles for dataclasses lies beside them, see `class_code`.
+"""
 
 import atexit
 import os

@@ -4,9 +4,9 @@ ezdxf reads queries, such as `LINE[layer=="A-WALL"]`, with pyparsing, typefaces 
 places on the globe with ElementTree; it reads the stroke fonts of CAD programs, works out all
 patterns of hatches and can measure texts as such a program sets them. numpy writes the help texts
 of its functions in C. This program asks for none of these, and they are more than a tenth of all
-that a run loads. So something stands in for what the libraries take from them. Where
-that is used after all, or anything else of them is asked for, the module is loaded and everything
-is as ever; but nothing asks for numpy's help texts, which are missing as in `python -OO`.
+that a run loads. So something stands in for what the libraries take from them. Where that is used
+after all, or anything else of them is asked for, the module is loaded and everything is as ever;
+but nothing asks for numpy's help texts, which are missing as in `python -OO`.
 """
 
 import sys
