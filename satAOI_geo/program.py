@@ -1,10 +1,11 @@
-"""satAOI-geo: made ready, run, and its errors turned into lines and exit codes."""
+"""satAOI-geo: made ready, run, and its errors turned into lines and exit codes.
+
+What takes time to load is imported by functions, so that an interrupt meanwhile is told as one.
+"""
 
 from collections.abc import Sequence
 from typing import Final
 
-from satAOI_adapters import class_code, linear_algebra, put_off
-from satAOI_adapters.collector import leave_at_once, look_seldom
 from satAOI_adapters.terminal import accept_any_text, say_error
 from satAOI_geo.errors import DrawingError, InputError, LimitError, SatAoiError, StartError
 
@@ -40,7 +41,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def run(arguments: Sequence[str] | None) -> int:
     """Run the command that the arguments name and return its exit code."""
-    # they load much, which is quicker once all is made ready
     import rich_click as click
 
     from satAOI_geo.cli import commands
@@ -57,6 +57,9 @@ def run(arguments: Sequence[str] | None) -> int:
 
 def make_ready() -> None:
     """Let the libraries load quickly and take little, and let any text be printed."""
+    from satAOI_adapters import class_code, linear_algebra, put_off
+    from satAOI_adapters.collector import leave_at_once, look_seldom
+
     accept_any_text()
     look_seldom()
     leave_at_once()

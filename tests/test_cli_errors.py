@@ -117,6 +117,17 @@ def test_an_interrupt_has_an_exit_code_of_its_own(
     assert not output.exists()
 
 
+def test_an_interrupt_while_the_program_loads_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted() -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("satAOI_geo.program.make_ready", interrupted)
+    assert main(["robots"]) == 130
+    assert capsys.readouterr().err == "error: interrupted\n"
+
+
 def test_too_little_memory_is_a_limit(
     room: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
