@@ -28,7 +28,15 @@ from satAOI_geo.aoi import Aoi, outlines_of
 from satAOI_geo.forest import roots, unite
 from satAOI_geo.memory import give_back
 from satAOI_geo.nodes import Nodes
-from satAOI_geo.plan import FloorPlan, IntArray, Obstacle, Region, as_region, polygons_in
+from satAOI_geo.plan import (
+    CONTACT_MM,
+    FloorPlan,
+    IntArray,
+    Obstacle,
+    Region,
+    as_region,
+    polygons_in,
+)
 from satAOI_geo.reach import EVERYTHING
 from satAOI_geo.search import Search
 from satAOI_geo.threads import run_threads
@@ -335,8 +343,11 @@ def _unions(regions: list[Region]) -> Iterator[Polygon]:
 
 
 def _largest_first(patch: Patch) -> tuple[float, tuple[float, float]]:
-    """Sorting key of a patch."""
-    return -patch.area_mm2, patch.label_mm
+    """Sorting key of a patch: of its size to the square millimetre, then from the left.
+
+    Rounding alone tells the sizes of the two corners of a room apart.
+    """
+    return -round(patch.area_mm2), patch.label_mm
 
 
 class _Blockers:
@@ -361,10 +372,15 @@ class _Blockers:
         return Patch(wkb, region.area, reason, (label.x, label.y), narrow, in_the_way)
 
     def _nearest(self, point: Point) -> Obstacle | None:
-        """The nearest obstacle, or None where the edge of the floor is nearer."""
+        """The nearest obstacle, or None where the edge of the floor is nearer.
+
+        Of several as near, but for `CONTACT_MM`, the first; an obstacle rather than the edge.
+        """
         if not self._obstacles:
             return None
-        index, distance_mm = self._tree.query_nearest(point, return_distance=True, all_matches=True)
-        if self._edge.distance(point) < distance_mm[0]:
+        _, (distance_mm,) = self._tree.query_nearest(point, return_distance=True, all_matches=False)
+        if self._edge.distance(point) < distance_mm - CONTACT_MM:
             return None
-        return self._obstacles[int(index.min())]
+        within_mm = distance_mm + CONTACT_MM
+        as_near = self._tree.query(point, predicate="dwithin", distance=within_mm)
+        return self._obstacles[int(as_near.min())]

@@ -11,7 +11,7 @@ from satAOI_geo import tiles
 from satAOI_geo.explain import explain
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import FloorPlan, Kind, Obstacle, polygons_in
-from satAOI_geo.reasons import Patch, Reason, put_together, unreached
+from satAOI_geo.reasons import Patch, Reason, _Blockers, _Piece, put_together, unreached
 from satAOI_geo.settings import Settings
 from satAOI_geo.start import StartMark
 from satAOI_geo.units import MM2_PER_M2
@@ -130,6 +130,32 @@ def test_niche_narrower_than_the_disc_is_left_for_the_disc() -> None:
     assert patch.reason is Reason.DISC
     assert patch.blocker is not None
     assert patch.blocker.handle in {"A", "B"}
+
+
+@pytest.mark.parametrize(
+    ("nearer_mm", "handle"), [(0.0, "A"), (1e-9, "A"), (-1e-9, "A"), (1.0, "B")]
+)
+def test_of_walls_as_near_but_for_a_rounding_the_first_is_in_the_way(
+    nearer_mm: float, handle: str
+) -> None:
+    walls = blocks((0, 0, 100, 1000), (300 - nearer_mm, 0, 400, 1000))
+    plan = FloorPlan(box(-1000, -1000, 2000, 2000), walls)
+    blockers = _Blockers(plan, [wall.region() for wall in walls])
+    between = blockers.patch(_Piece(Reason.DISC, box(190, 490, 210, 510)))
+    assert between.blocker is not None
+    assert between.blocker.handle == handle
+
+
+@pytest.mark.parametrize("turn_deg", [0, 7, 20, 33, 52, 71])
+def test_corners_of_a_room_come_from_the_left_though_roundings_tell_them_apart(
+    turn_deg: float,
+) -> None:
+    room = shapely.affinity.rotate(box(0, 0, 4000, 4000), turn_deg, origin=(0, 0))
+    patches = area_of_interest(FloorPlan(room, ()), settings=SETTINGS).patches
+    corners = [patch for patch in patches if not patch.narrow and patch.reason is Reason.DISC]
+    assert len({round(patch.area_mm2) for patch in corners}) == 1
+    assert len(corners) == 4
+    assert [patch.label_mm for patch in corners] == sorted(patch.label_mm for patch in corners)
 
 
 def test_end_of_a_deep_niche_that_only_the_disc_fits_is_left_for_the_vehicle() -> None:
