@@ -136,9 +136,8 @@ class Sweeps:
             from each swing.
         swings: Of the vehicle as it turns about its pivot, in the same order.
         orbits: Of the vehicle as its pivot turns about the disc, its heading kept.
-        rounds: Of a disc that holds all of these, for each direction: a node at which it touches
-            nothing bars no move of the vehicle from this direction, nor a turn of it about its
-            pivot in the next one.
+        rounds: Of a disc that holds the vehicle at any heading, as the robot turns from each
+            direction to the next: this holds all that the vehicle sweeps in moves from there.
     """
 
     arms: list[Part]

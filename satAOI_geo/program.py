@@ -9,7 +9,6 @@ from typing import Final
 from satAOI_adapters.terminal import accept_any_text, say_error
 from satAOI_geo.errors import DrawingError, InputError, LimitError, SatAoiError, StartError
 
-DONE: Final = 0
 USAGE: Final = 2
 INTERRUPTED: Final = 130
 EXIT_CODES: Final[dict[type[SatAoiError], int]] = {
@@ -47,7 +46,8 @@ def run(arguments: Sequence[str] | None) -> int:
 
     try:
         code = commands.main(arguments, prog_name="satAOI-geo", standalone_mode=False)
-        return int(code or DONE)
+        # of help there is none
+        return int(code or 0)
     except click.ClickException as error:
         say_error(error.format_message())
         return error.exit_code

@@ -312,7 +312,7 @@ class _Joined:
         self._one_at_a_time = Lock()
 
     def in_the_open(self, a1: int) -> None:
-        """Join poses of a direction and the next one where nothing is near, in some rows.
+        """Join poses of a direction with the next one's where nothing is near, in some rows.
 
         All moves would do so, one by one; most are then spared what their vehicle sweeps.
         """
@@ -320,16 +320,11 @@ class _Joined:
         rows = np.arange(n_ends - 1) % OPEN_ROWS == 0
         round_free = ~self._engine.blocked(self._sweeps.rounds[a1], rows)
         arm_turns = ~self._engine.blocked(self._sweeps.arms[a1], rows)
-        to_a1, every = (a1 + 1) % n_directions, slice(n_swings)
-        narrower, wider = slice(n_swings - 1), slice(1, n_swings)
-        joins = [
-            ((a1, every), (to_a1, every), round_free & arm_turns),
-            ((a1, narrower), (a1, wider), round_free),
-            ((to_a1, narrower), (to_a1, wider), round_free),
-        ]
+        here, there = (a1, slice(n_swings)), ((a1 + 1) % n_directions, slice(n_swings))
+        narrower, wider = (a1, slice(n_swings - 1)), (a1, slice(1, n_swings))
         with self._one_at_a_time:
-            for poses, to_poses, allowed in joins:
-                unite_poses(self.parents, self._runs, poses, to_poses, allowed, rows)
+            unite_poses(self.parents, self._runs, here, there, round_free & arm_turns, rows)
+            unite_poses(self.parents, self._runs, narrower, wider, round_free, rows)
 
     def by_move(self, move: Move) -> None:
         """Join the runs of two poses that a move leads between.

@@ -12,7 +12,6 @@ area of interest leaves over.
 import itertools
 from collections import defaultdict
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import reduce
@@ -188,14 +187,12 @@ class _TileRow:
     def left_over(self, k: int) -> tuple[list[_Piece], Region]:
         """What is left over in a tile: pieces, and strips with crumbs."""
         tile, cell_mm = self.tiles[k], self.found.lattice.step_mm
-        with ThreadPoolExecutor(max_workers=1) as beside:
-            # a tile of its own has the cores for itself; several share them anyway
-            waiting = beside.submit(self.wider, tile) if len(self.tiles) == 1 else None
-            broad, strips = self.opened(tile)
-            if broad.is_empty:
-                return [], strips
-            wider = waiting.result() if waiting else self.wider(tile)
-        shared_out = _by_reason(broad, wider, cell_mm)
+        free, aoi = (region.within(tile.around_mm) for region in (self.whole.free, self.whole.aoi))
+        broad, strips = _opened(as_region(free.difference(aoi)), NARROW_CELLS * cell_mm)
+        broad, strips = clipped(broad, tile.bounds_mm), clipped(strips, tile.bounds_mm)
+        if broad.is_empty:
+            return [], strips
+        shared_out = _by_reason(broad, self.wider(tile), cell_mm)
         pieces = [
             _Piece(reason, _compact(region), tile.ends(region))
             for reason, region in shared_out
@@ -203,13 +200,6 @@ class _TileRow:
         ]
         crumbs = [region for _, region in shared_out if region.area < cell_mm**2]
         return pieces, as_region(shapely.disjoint_subset_union_all([strips, *crumbs]))
-
-    def opened(self, tile: Tile) -> tuple[Region, Region]:
-        """The broad parts and the strips of what is left over in a tile."""
-        free, aoi = (region.within(tile.around_mm) for region in (self.whole.free, self.whole.aoi))
-        left_over = as_region(free.difference(aoi))
-        broad, strips = _opened(left_over, NARROW_CELLS * self.found.lattice.step_mm)
-        return clipped(broad, tile.bounds_mm), clipped(strips, tile.bounds_mm)
 
     def wider(self, tile: Tile) -> dict[Reason, Region]:
         """For each reason but the first what holds all that is left over for it and later ones.
@@ -224,6 +214,7 @@ class _TileRow:
         def troweled(k: int) -> Region:
             return region_of(outlines_of(fitting[k], window, disc_mm - (k + 1) * APART_MM))
 
+        # a tile of its own has the cores for itself; several share them anyway
         each = run_threads if len(self.tiles) == 1 else _in_turn
         wider = dict(zip(self.fitting, each(troweled, len(fitting)), strict=True))
         upper = self.whole.upper.within(tile.around_mm)

@@ -55,6 +55,14 @@ def the_error(capsys: pytest.CaptureFixture[str]) -> str:
     return line
 
 
+def printed(code: str, **environment: str) -> str:
+    """What code prints in a Python of its own, the last line of it for an error."""
+    code = f"import sys; sys.path[:0] = {sys.path!r}\n{code}"
+    command, own = [sys.executable, "-c", code], os.environ | environment
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=own)
+    return done.stdout + "".join(done.stderr.splitlines()[-1:])
+
+
 def program(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """The program as a shell would start it."""
     return subprocess.run(

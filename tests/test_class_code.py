@@ -1,13 +1,11 @@
 """Code of dataclasses, kept from run to run."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from satAOI_adapters.kernel_cache import VARIABLE
+from tests.command_line import printed
 
 CLASSES = """
 from dataclasses import FrozenInstanceError, asdict, dataclass, field, replace
@@ -46,13 +44,8 @@ builtins.compile = counting
 
 
 def said(code: str, folder: Path) -> str:
-    """What Python prints in a process of its own whose machine code is kept in a folder."""
-    code = f"import sys; sys.path[:0] = {sys.path!r}\n{code}"
-    environment = {**os.environ, VARIABLE: str(folder)}
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment
-    )
-    return done.stdout
+    """What code prints in a Python of its own whose machine code is kept in a folder."""
+    return printed(code, **{VARIABLE: str(folder)})
 
 
 def kept_in(folder: Path) -> Path:

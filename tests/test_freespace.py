@@ -303,10 +303,7 @@ def test_the_disc_about_the_vehicle_holds_all_that_it_sweeps(
     sweeps, n_swings = Sweeps.of(robot, lattice), len(lattice.swings)
     for a1, disc in enumerate(sweeps.rounds):
         here = slice(a1 * n_swings, (a1 + 1) * n_swings)
-        next_a1 = (a1 + 1) % n_directions
-        there = slice(next_a1 * n_swings, (next_a1 + 1) * n_swings)
-        swept = [*sweeps.turns[here], *sweeps.orbits[here]]
-        swept += [*sweeps.swings[here], *sweeps.swings[there]]
+        swept = [*sweeps.turns[here], *sweeps.orbits[here], *sweeps.swings[here]]
         corners = shapely.points(np.concatenate([part.corners_mm for part in swept]))
         core = shapely.MultiPoint(disc.corners_mm).convex_hull
         # the parts are convex and have no radius of their own

@@ -69,3 +69,11 @@ def test_a_folder_that_the_user_chose_is_left_alone(
     monkeypatch.setenv(VARIABLE, str(tmp_path))
     prepare()
     assert os.environ[VARIABLE] == str(tmp_path)
+
+
+def test_an_empty_name_is_no_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv(VARIABLE, "")
+    place = kernel_cache.place()
+    assert place is not None
+    assert place.is_relative_to(tmp_path / "satAOI-geo")

@@ -1,12 +1,10 @@
 """Libraries put off by the command line: not loaded by a run, and as ever where they are used."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-from tests.command_line import drawn_room
+from tests.command_line import drawn_room, printed
 
 DRAWING = """
 import ezdxf
@@ -25,13 +23,6 @@ print(*(type(parser.__self__) is pyparsing.And for parser in parsers))
 """
 
 
-def said(code: str) -> str:
-    """What Python prints in a process of its own, the last line of it for an error."""
-    code = f"import sys; sys.path[:0] = {sys.path!r}\n{code}"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    return done.stdout + "".join(done.stderr.splitlines()[-1:])
-
-
 def test_a_run_that_reads_and_writes_a_drawing_loads_none_of_them(tmp_path: Path) -> None:
     plan, output = drawn_room(tmp_path / "room.dxf"), tmp_path / "aoi.dxf"
     code = (
@@ -43,7 +34,7 @@ def test_a_run_that_reads_and_writes_a_drawing_loads_none_of_them(tmp_path: Path
         "'ezdxf.fonts.shapefile': 'readfile', 'numpy._core._add_newdocs': 'add_newdoc'}.items()\n"
         "print(*(name in vars(sys.modules[module]) for module, name in own))"
     )
-    assert said(code) == "True\nFalse False False False\n"
+    assert printed(code) == "True\nFalse False False False\n"
 
 
 @pytest.mark.parametrize(
@@ -119,7 +110,7 @@ def test_a_run_that_reads_and_writes_a_drawing_loads_none_of_them(tmp_path: Path
 )
 def test_what_is_put_off_is_as_ever_where_it_is_used(use: str) -> None:
     put_off = "from satAOI_adapters import put_off; put_off.until_used()\n"
-    assert said(put_off + DRAWING + use) == said(DRAWING + use) != ""
+    assert printed(put_off + DRAWING + use) == printed(DRAWING + use) != ""
 
 
 def test_what_is_loaded_already_is_not_put_off() -> None:
@@ -127,4 +118,4 @@ def test_what_is_loaded_already_is_not_put_off() -> None:
         "import pyparsing; from satAOI_adapters import put_off; put_off.until_used()\n"
         "print(sys.modules['pyparsing'] is pyparsing)"
     )
-    assert said(code) == "True\n"
+    assert printed(code) == "True\n"

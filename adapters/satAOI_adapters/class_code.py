@@ -1,9 +1,9 @@
 """What Python compiles for dataclasses, kept from run to run.
 
 As a dataclass is loaded, Python writes source for each of its methods and compiles it. For the
-hundred and more of a run this takes longer than all else that their modules do: a tenth of a short
-run. Python keeps the code of modules, but not of this source. So it is kept here, beside the
-kernels, found again by the source itself, and made anew where it is not found.
+hundred and more of a run this takes longer than all else that their modules do as they are loaded.
+Python keeps the code of modules, but not of this source. So it is kept here, beside the kernels,
+found again by the source itself, and made anew where it is not found.
 """
 
 import atexit

@@ -26,7 +26,9 @@ def prepare() -> None:
 def place() -> Path | None:
     """Where they are kept, or would be; None where there is no place that lasts."""
     try:
-        return Path(os.environ[VARIABLE]) if VARIABLE in os.environ else _users_folder()
+        named = os.environ.get(VARIABLE)
+        # an empty name would be that of the folder one happens to work in
+        return Path(named) if named else _users_folder()
     except RuntimeError:
         return None
 
