@@ -171,6 +171,9 @@ def batch(context: click.Context, *, quiet: bool, **options: Unpack[BatchOptions
     named = [Path(options["robot"]), options["layers"], options["xref_dir"]]
     tasks = tasks_of(plans, out_dir, handed_on(context, besides=own), filter(None, named))
     kept = {} if options["again"] else rows_kept(tasks, earlier_rows(out_dir))
+    if options["scheduler"] is None:
+        # else each of the runs would compile them, and none would say so
+        kernel_cache.compile_missing(quiet=quiet)
     with (
         workers(n_workers=options["workers"], scheduler=options["scheduler"]) as crew,
         counted(len(tasks) - len(kept), quiet=quiet) as told,
@@ -270,7 +273,7 @@ def answer(
     """Read a plan and find the area of interest on it."""
     from satAOI_adapters import kernel_cache
     from satAOI_adapters.robot_read import robot_from
-    from satAOI_adapters.terminal import progress, say_note
+    from satAOI_adapters.terminal import progress
 
     kernel_cache.prepare()
     # what is cheap to refuse comes first
@@ -282,8 +285,7 @@ def answer(
     from satAOI_geo.pipeline import area_of_interest
 
     mark = None if options["start"] is None else mark_of(options["start"], plan)
-    if not quiet and not kernel_cache.are_compiled():
-        say_note("first run of this version: compiling takes some seconds, once")
+    kernel_cache.compile_missing(quiet=quiet)
     with progress(quiet=quiet) as told:
         return area_of_interest(plan, robot, settings, start=mark, progress=told, crew=crew)
 

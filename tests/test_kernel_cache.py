@@ -7,10 +7,9 @@ from pathlib import Path
 import pytest
 
 from satAOI_adapters import kernel_cache
-from satAOI_adapters.kernel_cache import VARIABLE, are_compiled, prepare
+from satAOI_adapters.kernel_cache import VARIABLE, compile_missing, prepare
 from satAOI_geo.kernels import KERNELS
-from satAOI_geo.program import main
-from tests.command_line import drawn_room
+from tests.command_line import drawn_room, program
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the folders of Linux")
 
@@ -27,29 +26,42 @@ def test_kernels_are_kept_in_the_users_cache(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     prepare()
     assert Path(os.environ[VARIABLE]).is_relative_to(tmp_path / "satAOI-geo")
-    assert not are_compiled()
+    assert not any(kernel.is_kept() for kernel in KERNELS)
 
 
-def test_kernels_are_compiled_when_all_of_them_are(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv(VARIABLE, str(tmp_path))
-    assert not are_compiled()
-    for kernel in KERNELS:
-        Path(kernel._path()).touch()
-    assert are_compiled()
-    Path(KERNELS[0]._path()).unlink()
-    assert not are_compiled()
+def test_a_first_run_says_that_it_compiles_and_no_later_one_does(tmp_path: Path) -> None:
+    plan, folder = str(drawn_room(tmp_path / "room.dxf")), str(tmp_path / "kernels")
+    first, later = (program(plan, NUMBA_CACHE_DIR=folder) for _ in range(2))
+    assert "compiling takes some seconds" in first.stderr
+    assert "compiling" not in later.stderr
+    way = program("route", plan, "--to", "1000,1000", NUMBA_CACHE_DIR=folder)
+    assert (way.returncode, "compiling" in way.stderr) == (0, False)
+    # what later runs did not need to compile they did not compile unsaid either
+    assert len(list(Path(folder).glob("*.o"))) == len(KERNELS)
 
 
-def test_a_first_run_says_that_it_compiles(
+def test_a_kernel_that_is_missing_is_compiled_and_that_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    plan = str(drawn_room(tmp_path / "room.dxf"))
-    for kept in (False, True):
-        monkeypatch.setattr(kernel_cache, "are_compiled", lambda kept=kept: kept)
-        assert main([plan, "--report", str(tmp_path / "report.json")]) == 0
-        assert ("compiling takes some seconds" in capsys.readouterr().err) is not kept
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    for kernel in KERNELS:
+        Path(kernel._path()).touch()
+    compile_missing(quiet=False)
+    assert capsys.readouterr().err == ""
+    Path(KERNELS[0]._path()).unlink()
+    compile_missing(quiet=True)
+    assert capsys.readouterr().err == ""
+    compile_missing(quiet=False)
+    assert "compiling takes some seconds" in capsys.readouterr().err
+
+
+def test_a_batch_says_once_that_it_compiles(tmp_path: Path) -> None:
+    plans = [str(drawn_room(tmp_path / f"{name}.dxf")) for name in "ab"]
+    done = program(
+        "batch", *plans, "--out-dir", str(tmp_path), NUMBA_CACHE_DIR=str(tmp_path / "kernels")
+    )
+    assert done.returncode == 0
+    assert done.stderr.count("compiling takes some seconds") == 1
 
 
 def test_without_a_place_to_write_they_last_for_the_run(

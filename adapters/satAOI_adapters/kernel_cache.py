@@ -12,6 +12,7 @@ from importlib import import_module
 from pathlib import Path
 
 import satAOI_geo
+from satAOI_adapters.terminal import say_note
 
 VARIABLE = "NUMBA_CACHE_DIR"
 """Read by `satAOI_geo.kernels`; a value that the user set is left alone."""
@@ -33,13 +34,20 @@ def place() -> Path | None:
         return None
 
 
-def are_compiled() -> bool:
-    """Whether all kernels are in the folder, none to be compiled."""
+def compile_missing(*, quiet: bool) -> None:
+    """Compile all kernels that are not in the folder, and say so first.
+
+    Those of other commands, too: one that is left to be compiled would be said again each time.
+    """
     # it imports the modules that have kernels
     import_module("satAOI_geo.pipeline")
     from satAOI_geo.kernels import KERNELS
 
-    return all(kernel.is_kept() for kernel in KERNELS)
+    missing = [kernel for kernel in KERNELS if not kernel.is_kept()]
+    if missing and not quiet:
+        say_note("first run of this version: compiling takes some seconds, once")
+    for kernel in missing:
+        kernel.ready()
 
 
 def _own_folder() -> Path:
