@@ -83,6 +83,8 @@ def commands(drawing: Path, folder: Path) -> dict[str, Job]:
 
     def command(*arguments: str, **environment: str) -> None:
         program, own = [sys.executable, "-c", COMMAND, *arguments], os.environ | environment
+        # installed, the program's sources are not compiled by Python at each start
+        own.pop("PYTHONDONTWRITEBYTECODE", None)
         quiet = subprocess.DEVNULL
         subprocess.run(program, check=True, stdout=quiet, env=own)  # noqa: S603  the command timed
 
