@@ -142,7 +142,7 @@ def _sorted(chosen: Nodes, side: int) -> tuple[IntArray, IntArray]:
     rows, columns = (size // side + 1 for size in chosen.shape)
     runs = rows_of(chosen)
     width = runs.end.astype(np.int64) - runs.begin + 1
-    y = np.repeat(np.repeat(np.arange(chosen.shape[0]), np.diff(runs.first)), width)
+    y = np.repeat(runs.rows(), width)
     x = np.arange(y.size) + np.repeat(runs.begin - np.cumsum(width) + width, width)
     square = y // side * columns + x // side
     order = np.argsort(square, kind="stable")

@@ -176,18 +176,16 @@ def moves(engine: Engine, sweeps: Sweeps, space: FreeSpace, a1: int) -> Iterator
     n_directions, n_swings = space.lattice.n_directions, len(space.lattice.swings)
     next_a1 = (a1 + 1) % n_directions
     arm_turns = ~engine.blocked(sweeps.arms[a1])
-    # a swing range of a full turn is a ring: its last swing is beside its first
-    is_ring = n_swings == n_directions
     for swing in range(n_swings):
         vehicle = a1 * n_swings + swing
         yield Move(a1, swing, next_a1, swing, arm_turns, sweeps.turns[vehicle])
 
-        wider = _neighbour(swing + 1, n_swings, ring=is_ring)
+        wider = _neighbour(space.lattice, swing + 1)
         if wider is not None:
             free = space.words[a1, swing]
             yield Move(a1, swing, a1, wider, free, sweeps.swings[vehicle])
 
-        narrower = _neighbour(swing - 1, n_swings, ring=is_ring)
+        narrower = _neighbour(space.lattice, swing - 1)
         if narrower is not None:
             yield Move(a1, swing, next_a1, narrower, arm_turns, sweeps.orbits[vehicle])
 
@@ -199,8 +197,9 @@ def _vehicles(robot: Robot, lattice: Lattice, a1: int) -> list[Part]:
     return robot.vehicles(directions[a1], directions[headings])
 
 
-def _neighbour(swing: int, n_swings: int, *, ring: bool) -> int | None:
-    """The swing number, taken round a ring, or None beyond the ends of a range."""
-    if ring:
+def _neighbour(lattice: Lattice, swing: int) -> int | None:
+    """The swing number, taken all round, or None beyond the ends of a range."""
+    n_swings = len(lattice.swings)
+    if lattice.swings_all_round:
         return swing % n_swings
     return swing if 0 <= swing < n_swings else None

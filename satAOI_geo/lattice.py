@@ -40,6 +40,8 @@ class Lattice:
         swings: The turns a2 of the vehicle against the arm, in whole directions, ascending.
         first_row: Which row of the lattice that this is a band of its row 0 is; y is counted from
             there, so that a node has the same coordinates in both to the last bit.
+        swings_all_round: Whether the last swing is beside the first: a range that lacks one
+            direction of a full turn has as many, and an end between them.
     """
 
     origin_mm: tuple[float, float]
@@ -49,6 +51,7 @@ class Lattice:
     n_directions: int
     swings: tuple[int, ...]
     first_row: int = 0
+    swings_all_round: bool = False
 
     @classmethod
     def over(
@@ -93,7 +96,15 @@ class Lattice:
                 f"the swing range of robot '{robot.name}' holds no multiple of "
                 f"{math.degrees(turn_rad):g}°; give more --directions"
             )
-        return cls((left, bottom), step_mm, n_rows, n_columns, n_directions, swings)
+        return cls(
+            (left, bottom),
+            step_mm,
+            n_rows,
+            n_columns,
+            n_directions,
+            swings,
+            swings_all_round=robot.swings_all_round,
+        )
 
     @property
     def shape(self) -> tuple[int, int]:

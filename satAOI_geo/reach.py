@@ -71,7 +71,7 @@ class DiscComponents:
     def of(cls, free: Nodes) -> "DiscComponents":
         """Sets of free nodes joined by their 8 neighbours: what Algorithm 2 searches."""
         rows = rows_of(free)
-        row = np.repeat(np.arange(free.shape[0]), np.diff(rows.first))
+        row = rows.rows()
         # one number that puts row and column in order; rows are more than a step apart in it
         width = free.n_columns + 2
         begins, ends = row * width + rows.begin, row * width + rows.end
@@ -89,7 +89,7 @@ class DiscComponents:
     def labels_at(self, iy: npt.ArrayLike, ix: npt.ArrayLike) -> npt.NDArray[np.int32]:
         """The sets that hold some nodes, -1 for those where no pose is free; shape as iy and ix."""
         width = self.shape[1] + 1
-        row = np.repeat(np.arange(self.shape[0]), np.diff(self.rows.first))
+        row = self.rows.rows()
         # one number that puts row and column in order
         node = np.asarray(iy, dtype=np.int64) * width + np.asarray(ix)
         stretch = np.searchsorted(row * width + self.rows.end, node)

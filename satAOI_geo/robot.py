@@ -22,6 +22,9 @@ import numpy as np
 from satAOI_geo.errors import RobotError
 from satAOI_geo.plan import FloatArray
 
+FULL_TURN_SLACK: Final = 1e-12
+"""Degrees turned into radians may end a full turn a rounding early or late: a share of it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Pose:
@@ -121,8 +124,7 @@ class Robot:
                 measure="arm_length_mm",
             )
         swing_rad = self.swing_max_rad - self.swing_min_rad
-        # degrees turned into radians may end a full turn a rounding late
-        if not 0 <= swing_rad <= 2 * math.pi * (1 + 1e-12):
+        if not 0 <= swing_rad <= 2 * math.pi * (1 + FULL_TURN_SLACK):
             raise RobotError(
                 f"robot '{self.name}': the swing range from {math.degrees(self.swing_min_rad):g}° "
                 f"to {math.degrees(self.swing_max_rad):g}° must span 0° to 360°",
@@ -135,6 +137,11 @@ class Robot:
         half_diagonal_mm = math.hypot(self.vehicle_length_mm, self.vehicle_width_mm) / 2
         vehicle_mm = self.arm_length_mm + abs(self.pivot_offset_mm) + half_diagonal_mm
         return max(vehicle_mm, self.disc_radius_mm)
+
+    @property
+    def swings_all_round(self) -> bool:
+        """Whether the swing range is a full turn, so that no end of it stops the arm."""
+        return self.swing_max_rad - self.swing_min_rad >= 2 * math.pi * (1 - FULL_TURN_SLACK)
 
     @property
     def vehicle_reach_mm(self) -> float:

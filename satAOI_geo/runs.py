@@ -94,6 +94,10 @@ class SliceRuns:
         begin, end = filled(lambda runs: _gather(free, barred, first, runs), room).T
         return cls(first, begin, end)
 
+    def rows(self) -> IntArray:
+        """Row of each run, shape (n_runs,)."""
+        return np.repeat(np.arange(self.first.size - 1), np.diff(self.first))
+
 
 def rows_of(nodes: Nodes) -> SliceRuns:
     """The stretches of a set's nodes, row by row."""

@@ -14,6 +14,7 @@ from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import FloorPlan, Frame, Obstacle
 from satAOI_geo.reach import DiscComponents, PoseComponents, State
 from satAOI_geo.robot import Robot
+from satAOI_geo.runs import rows_of
 from satAOI_geo.zones import largest, set_down
 
 
@@ -161,7 +162,7 @@ class StartFinder:
         nearest = nearest_mm / frame.mm_per_unit
         return StartBlockedError(
             f"start ({x_mm:.1f}, {y_mm:.1f}) mm {reason}; the nearest node with a free pose is "
-            f"--start {nearest[0]:g},{nearest[1]:g}",
+            f"--start {nearest[0]:.12g},{nearest[1]:.12g}",
             at_mm=(x_mm, y_mm),
             handle=obstacle.handle if obstacle else "",
             layer=obstacle.layer if obstacle else "",
@@ -191,16 +192,20 @@ def _nearest_state(
     turn_rad = 2 * math.pi / lattice.n_directions
     a1 = round(angles_rad[0] / turn_rad) % lattice.n_directions
     wanted = angles_rad[1] / turn_rad
-    swing = min(range(len(lattice.swings)), key=lambda k: abs(lattice.swings[k] - wanted))
-    return State(*node, a1, swing)
+    apart = np.abs(np.array(lattice.swings) - wanted)
+    if lattice.swings_all_round:
+        apart = np.minimum(apart, lattice.n_directions - apart)
+    return State(*node, a1, int(apart.argmin()))
 
 
 def _nearest_free_mm(
     free: Nodes, lattice: Lattice, at_mm: tuple[float, float]
 ) -> tuple[float, float]:
     """The free node nearest to a point, the lowest row and column among equals."""
-    rows, columns = np.nonzero(free.as_array())
-    x_mm = lattice.origin_mm[0] + (columns + 0.5) * lattice.step_mm
-    y_mm = lattice.origin_mm[1] + (rows + 0.5) * lattice.step_mm
-    nearest = int(np.hypot(x_mm - at_mm[0], y_mm - at_mm[1]).argmin())
-    return float(x_mm[nearest]), float(y_mm[nearest])
+    # in cells from the first node; a large floor has too many nodes to ask each of them
+    x, y = (np.array(at_mm) - lattice.origin_mm) / lattice.step_mm - 0.5
+    stretches = rows_of(free)
+    rows = stretches.rows()
+    columns = np.clip(np.ceil(x - 0.5), stretches.begin, stretches.end)
+    nearest = int(np.hypot(columns - x, rows - y).argmin())
+    return lattice.x_mm(int(columns[nearest])), lattice.y_mm(int(rows[nearest]))

@@ -318,8 +318,11 @@ def _area_mm2(components: Components, label: int, lattice: Lattice, disc_mm: flo
 def _area_bounds_mm2(
     boxes: npt.NDArray[np.int64], disc_mm: float, step_mm: float
 ) -> npt.NDArray[np.float64]:
-    """No component covers more than its box grown by the disc: a rounded rectangle."""
-    sides_mm = (boxes[:, 2:] - boxes[:, :2]) * step_mm + 2 * disc_mm
+    """No component covers more than the cells of its box grown by the disc: a rounded rectangle.
+
+    That holds for the outline and for the raster, whose cells reach half a step beyond the disc.
+    """
+    sides_mm = (boxes[:, 2:] - boxes[:, :2] + 1) * step_mm + 2 * disc_mm
     bounds: npt.NDArray[np.float64] = sides_mm.prod(axis=1) - (4 - math.pi) * disc_mm**2
     return bounds
 

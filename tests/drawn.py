@@ -10,8 +10,17 @@ from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box
 from satAOI_geo.plan import Circle, FloorPlan, Kind, Obstacle, Region, Shape, polygons_in
 from satAOI_geo.robot import Robot
 
-SWING_RANGES_DEG: Final = [(-90, 90), (-45, 120), (0, 75), (-170, -10), (-180, 180), (0, 0)]
-"""The prototype's, three that are not symmetric, the full turn, and a stiff arm."""
+SWING_RANGES_DEG: Final = [
+    (-90, 90),
+    (-45, 120),
+    (0, 75),
+    (-170, -10),
+    (-180, 180),
+    (-180, 175),
+    (0, 0),
+]
+"""The prototype's, three that are not symmetric, the full turn, one that lacks 5° of it, and a
+stiff arm."""
 
 
 @st.composite

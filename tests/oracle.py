@@ -56,7 +56,7 @@ class Oracle:
         self.obstacles = [solid_of(o.shape) for o in plan.obstacles]
         self.nodes = [(iy, ix) for iy in range(lattice.n_rows) for ix in range(lattice.n_columns)]
         self.swings = self._swings()
-        self.is_ring = len(self.swings) == lattice.n_directions
+        self.is_ring = robot.swing_max_rad - robot.swing_min_rad > 2 * math.pi - 1e-9
 
     def _swings(self) -> list[int]:
         """The a2 for which the swing -a2 lies in the robot's range; a full turn counts once."""

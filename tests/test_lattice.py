@@ -59,7 +59,7 @@ def test_extent_of_whole_cells_has_as_many_nodes(left: int, n_cells: int, step_m
     assert Lattice.over(bounds_mm, PROTOTYPE, step_mm=step_mm).shape == (1, n_cells)
 
 
-@given(st.floats(-5, 405), st.floats(-5, 305))
+@given(st.floats(-5, 405, allow_subnormal=False), st.floats(-5, 305, allow_subnormal=False))
 def test_nearest_node_is_the_one_whose_cell_holds_the_point(x_mm: float, y_mm: float) -> None:
     lattice = lattice_of(n_rows=30, n_columns=40)
     node = lattice.nearest_node(x_mm, y_mm)
@@ -130,6 +130,13 @@ def test_full_turn_of_swing_has_every_heading_once(least_deg: int) -> None:
     swings = Lattice.over(HALL_MM, with_swing(least_deg, least_deg + 360)).swings
     assert len(swings) == 24
     assert {turn % 24 for turn in swings} == set(range(24))
+
+
+def test_swing_is_all_round_where_nothing_is_missing_of_a_full_turn() -> None:
+    # both have 24 swings of 15°; 180° itself and -165° are no neighbours where 5° lie between
+    for most_deg, all_round in ((180, True), (175, False)):
+        lattice = Lattice.over(HALL_MM, with_swing(-180, most_deg))
+        assert (len(lattice.swings), lattice.swings_all_round) == (24, all_round)
 
 
 def test_swing_range_between_two_directions_is_refused() -> None:

@@ -95,6 +95,14 @@ ODD_ROBOTS = {
         swing_min_rad=-math.pi,
         swing_max_rad=math.pi,
     ),
+    # as many swings as a full turn has, and an end between the last and the first
+    "all_but_one_degree_of_swing": replace(
+        PROTOTYPE,
+        vehicle_length_mm=500.0,
+        vehicle_width_mm=300.0,
+        swing_min_rad=-math.pi,
+        swing_max_rad=math.radians(179),
+    ),
     # between two directions its arm sweeps floor that it covers in neither
     "thin_arm": replace(
         PROTOTYPE,
@@ -371,3 +379,18 @@ def test_floor_cut_into_bands_has_the_same_sets(seed: int) -> None:
             state = whole.straightest(iy, ix, label)
             assert cut.straightest(iy, ix, label) == state
             assert cut.at(*state) == label
+
+
+@pytest.mark.parametrize("name", ["full_turn_of_swing", "all_but_one_degree_of_swing"])
+def test_the_arm_swings_through_180_degrees_where_its_range_has_them(name: str) -> None:
+    robot = ODD_ROBOTS[name]
+    plan = FloorPlan(box(0, 0, 4000, 4000))
+    lattice = Lattice.over(plan.floor.bounds, robot, step_mm=500.0, n_directions=8)
+    engine = Intervals.of(plan, robot, lattice)
+    space = free_space(engine, robot, lattice)
+    swung = {
+        abs(move.to_swing - move.swing)
+        for move in moves(engine, Sweeps.of(robot, lattice), space, 0)
+    }
+    # from the last of 8 swings to the first
+    assert swung == ({0, 1, 7} if name == "full_turn_of_swing" else {0, 1})

@@ -72,8 +72,7 @@ def stretches_of(sets: list[BoolArray]) -> Stretches:
     parts = []
     for label, nodes in enumerate(sets):
         rows = rows_of(Nodes.of(nodes))
-        row = np.repeat(np.arange(len(nodes)), np.diff(rows.first))
-        parts.append((np.full(row.size, label), row, rows.begin, rows.end))
+        parts.append((np.full(rows.begin.size, label), rows.rows(), rows.begin, rows.end))
     columns = (np.concatenate(part).astype(np.int32) for part in zip(*parts, strict=True))
     return Stretches.of(*columns, n_sets=len(sets))
 

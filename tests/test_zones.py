@@ -9,11 +9,14 @@ from shapely.geometry import box
 from satAOI_geo.collision import Collider
 from satAOI_geo.discs import covered_cells
 from satAOI_geo.errors import NothingFreeError, StartBlockedError
+from satAOI_geo.lattice import Lattice
+from satAOI_geo.nodes import Nodes
 from satAOI_geo.pipeline import Result, area_of_interest
 from satAOI_geo.plan import FloorPlan, Kind, Obstacle
+from satAOI_geo.reach import DiscComponents
 from satAOI_geo.settings import Settings
 from satAOI_geo.start import StartMark
-from satAOI_geo.zones import ZONE_MM2
+from satAOI_geo.zones import ZONE_MM2, _area_bounds_mm2, _area_mm2
 from tests import plans
 
 SETTINGS = Settings(step_mm=25.0, n_directions=12)
@@ -161,3 +164,17 @@ def test_the_obstacle_that_takes_most_of_a_floor_without_free_poses_is_named() -
     )
     with pytest.raises(NothingFreeError, match=r"1F.*'ROOF' takes 9\.00 m²"):
         area_of_interest(plan, settings=SETTINGS)
+
+
+@pytest.mark.parametrize("disc_mm", [20.0, 50.0, 350.0])
+def test_no_set_covers_more_cells_than_its_bound_says(disc_mm: float) -> None:
+    rng = np.random.default_rng(7)
+    for _ in range(30):
+        chosen = rng.random((rng.integers(1, 5), rng.integers(1, 9))) < 0.7
+        chosen[0, 0] = True
+        lattice = Lattice((0.0, 0.0), 10.0, *np.add(chosen.shape, 80).tolist(), 4, (0,))
+        # room for all that the disc covers
+        sets = DiscComponents.of(Nodes.of(np.pad(chosen, 40)))
+        bounds_mm2 = _area_bounds_mm2(sets.boxes, disc_mm, lattice.step_mm)
+        for label, bound_mm2 in enumerate(bounds_mm2.tolist()):
+            assert _area_mm2(sets, label, lattice, disc_mm) <= bound_mm2
