@@ -97,7 +97,7 @@ def all_explored(
         engine: Tells where a part touches something.
         robot: The robot.
         lattice: Nodes and directions.
-        memory_gb: What the free space of a band may take.
+        memory_gb: What the search of a band may take, `SPACES_AT_ONCE` times its free space.
         watch: Times the stages.
         crew: Workers that search the bands; without them they are searched here, in turn.
     """

@@ -493,7 +493,7 @@ QUESTION: Final[Group] = (
         default=1.0,
         show_default=True,
         panel="The search",
-        help="What the free poses may take in memory; a floor that would take more is searched in "
+        help="What the search may take in memory; a floor that would take more is searched in "
         "bands of rows, with the same answer, e.g. --memory 4",
     ),
 )

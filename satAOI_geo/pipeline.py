@@ -85,6 +85,7 @@ def area_of_interest(
 
     Raises:
         InputError: If a setting or the start's pose is out of range.
+        EmptyPlanError: If the plan has no floor.
         LimitError: If the lattice would hold too many nodes.
         NothingFreeError: If the robot fits nowhere on the floor.
         StartBlockedError: If no pose is free at the start.

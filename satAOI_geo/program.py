@@ -28,7 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         say_error(str(error))
         return next(code for sort, code in EXIT_CODES.items() if isinstance(error, sort))
     except OSError as error:
-        say_error(f"{error.filename or 'input or output'}: {error.strerror}")
+        say_error(f"{error.filename or 'input or output'}: {error.strerror or error}")
         return USAGE
     except MemoryError:
         say_error("not enough memory for this plan; give a coarser --step or a smaller --region")

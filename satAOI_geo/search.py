@@ -6,7 +6,7 @@ from satAOI_geo.align import wall_direction_rad
 from satAOI_geo.bands import Crew, all_explored
 from satAOI_geo.collision import Collider, Reference
 from satAOI_geo.engine import Engine
-from satAOI_geo.errors import NothingFreeError
+from satAOI_geo.errors import EmptyPlanError, InputError, NothingFreeError
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.nodes import Nodes
@@ -70,10 +70,12 @@ def search(
 
     Raises:
         InputError: If a setting or the start's pose is out of range.
+        EmptyPlanError: If the plan has no floor.
         LimitError: If the lattice would hold too many nodes.
         NothingFreeError: If the robot fits nowhere on the floor.
         StartBlockedError: If no pose is free at the start.
     """
+    _refuse_what_cannot_be_searched(plan, robot, settings)
     turn_rad = wall_direction_rad(plan) if settings.align_rad is None else settings.align_rad
     mark = start if start is not None else StartMark.of(plan)
     if mark is not None:
@@ -101,6 +103,23 @@ def search(
             else finder.at(mark.turned(turn_rad))
         )
     return Search(plan, robot, settings, lattice, engine, free, n_states, disc, pose, found)
+
+
+def _refuse_what_cannot_be_searched(plan: FloorPlan, robot: Robot, settings: Settings) -> None:
+    """Refuse a plan without a floor, and discs that would leave floor between each other.
+
+    Raises:
+        EmptyPlanError: If the plan has no floor.
+        InputError: If the disc's positions lie farther apart than it is wide.
+    """
+    if plan.floor.is_empty:
+        raise EmptyPlanError("the plan has no floor; give it one with an area")
+    width_mm = 2 * robot.disc_radius_mm
+    if settings.step_mm > width_mm:
+        raise InputError(
+            f"the lattice step is {settings.step_mm:g} mm, but the disc of robot '{robot.name}' is "
+            f"{width_mm:g} mm wide; give a shorter --step"
+        )
 
 
 def _engine(plan: FloorPlan, robot: Robot, lattice: Lattice, settings: Settings) -> Engine:

@@ -6,6 +6,10 @@ from typing import Final, Literal, TypeAlias
 
 from satAOI_geo.errors import InputError
 
+LEAST_STEP_MM: Final = 1e-3
+MOST_CLEARANCE_MM: Final = 1e6
+"""Beyond these numbers lose the digits that contact is told by."""
+
 Connectivity: TypeAlias = Literal["disc", "pose"]
 
 
@@ -21,11 +25,12 @@ class Settings:
         align_rad: Direction of the lattice in the drawing; None lays it along most of the walls.
         engine: `fast`, or `reference` to ask the exact collision test node by node.
         exact_outline: Keep the scallops between neighbouring discs in the outline.
-        memory_gb: What the free space may take; a floor that would take more is searched in bands
-            of rows, with the same answer.
+        memory_gb: What the search may take besides Python, the libraries and the plan; a floor
+            that would take more is searched in bands of rows, with the same answer.
 
     Raises:
-        InputError: If the clearance, the direction or the memory is not a usable number.
+        InputError: If the step, the clearance, the direction or the memory is not a usable
+            number.
     """
 
     connectivity: Connectivity = "pose"
@@ -38,8 +43,15 @@ class Settings:
     memory_gb: float = 1.0
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.clearance_mm) and self.clearance_mm >= 0):
-            raise InputError(f"the clearance is {self.clearance_mm:g} mm; give 0 or more")
+        if not LEAST_STEP_MM <= self.step_mm < math.inf:
+            raise InputError(
+                f"the lattice step is {self.step_mm:g} mm; give a length of at least "
+                f"{LEAST_STEP_MM:g}"
+            )
+        if not 0 <= self.clearance_mm <= MOST_CLEARANCE_MM:
+            raise InputError(
+                f"the clearance is {self.clearance_mm:g} mm; give 0 to {MOST_CLEARANCE_MM:g}"
+            )
         if self.align_rad is not None and not math.isfinite(self.align_rad):
             raise InputError(f"the lattice's direction is {self.align_rad:g}; give an angle")
         if not self.memory_gb > 0:

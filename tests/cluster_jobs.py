@@ -14,6 +14,12 @@ def squared(number: int) -> int:
     return number * number
 
 
+def squared_later(number: int) -> int:
+    """The first at once, the others not before a minute has gone by."""
+    time.sleep(60 if number else 0)
+    return number * number
+
+
 def refused(number: int) -> int:
     raise ValueError(number)
 

@@ -89,6 +89,13 @@ def test_spikes_and_repeated_corners_are_left_out(width_mm: float) -> None:
     assert loop.area_mm2() == pytest.approx(81, abs=1e-4)
 
 
+def test_a_spike_of_many_corners_is_left_out_whole() -> None:
+    n = 1500
+    there = [(k, 5.0) for k in range(9, n)]
+    corners = [(0, 0), (9, 0), *there, *there[-2::-1], (9, 9), (0, 9)]
+    assert loop_with_arcs(LinearRing(corners)).area_mm2() == pytest.approx(81)
+
+
 def test_no_patch_is_drawn_farther_off_than_the_rise_of_its_arcs() -> None:
     regions = [patch.region for patch in results.furnished_result().patches if not patch.narrow]
     polygons = polygons_in(regions)

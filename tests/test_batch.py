@@ -344,6 +344,14 @@ def test_names_differ_by_folder_and_where_need_be_by_suffix() -> None:
     assert batch.names_in(out, all_plans) == ["out/hall.dxf", "out/hall.ifc", "out/b/hall"]
 
 
+@pytest.mark.usefixtures("texts")
+def test_no_plan_is_called_what_another_one_is_called_with_its_suffix() -> None:
+    for name in ("hall.dxf", "hall.ifc", "hall.dxf.ifc", "hall.dxf.ifc.dxf"):
+        Path(name).touch()
+    names = batch.names_in(Path("out"), batch.plans_of(["hall.*"]))
+    assert len(set(names)) == 4
+
+
 def task(plan: Path) -> batch.Task:
     return batch.Task(
         plan=plan.name,

@@ -26,10 +26,13 @@ def room(tmp_path: Path) -> Path:
         (["--start", "1000,1000,0,91"], 2, "from -90° to 90°; give a start within"),
         (["--start", "-600,1000,180,0"], 4, "this pose is not free; the edge of the floor"),
         (["--step", "0"], 2, "0"),
+        (["--step", "5e-324"], 2, "give a length of at least 0.001"),
+        (["--step", "701"], 2, "is 700 mm wide; give a shorter --step"),
         (["--align", "up"], 2, "'up' is neither an angle"),
         (["--step", "ten"], 2, "'ten' is not a valid float"),
         (["--directions", "7"], 2, "multiple of 4"),
         (["--clearance", "-1"], 2, "clearance"),
+        (["--clearance", "1e20"], 2, "give 0 to 1e+06"),
         (["--storey", "2"], 2, "--storey says nothing about a plan in DXF"),
         (["--floor-z", "0"], 2, "--floor-z says nothing about a plan in DXF"),
         (["--with", "IfcDoor"], 2, "--with says nothing about a plan in DXF"),
@@ -148,6 +151,17 @@ def test_a_mistake_of_the_program_is_not_made_to_look_like_bad_input(
     monkeypatch.setattr(pipeline, "area_of_interest", mistaken)
     with pytest.raises(ZeroDivisionError):
         main([str(room), "--quiet"])
+
+
+def test_an_error_without_a_number_is_told_in_its_own_words(
+    room: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise OSError("Timed out during handshake")
+
+    monkeypatch.setattr(pipeline, "area_of_interest", fail)
+    assert main([str(room)]) == 2
+    assert the_error(capsys).endswith("Timed out during handshake")
 
 
 def test_names_that_are_no_text_are_printed_all_the_same(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 import itertools
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -137,6 +138,42 @@ def test_the_loss_of_all_workers_is_an_error(monkeypatch: pytest.MonkeyPatch) ->
         working._client.cluster.scale(0)
         with pytest.raises(LimitError, match="workers are lost"):
             list(outcomes)
+
+
+def test_the_loss_of_the_scheduler_is_an_error() -> None:
+    with _served() as (address, server), workers(scheduler=address) as working:
+        outcomes = working.outcomes(jobs.squared_later, range(3))
+        assert next(outcomes).value() == 0
+        server.kill()
+        with pytest.raises(LimitError, match="or their scheduler is"):
+            list(outcomes)
+
+
+@contextmanager
+def _served() -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
+    """A scheduler with a worker, each in a process of its own, and its address."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+    port = address.rpartition(":")[2]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    command = [sys.executable, "-m"]
+    local = ["--host", "127.0.0.1", "--no-dashboard"]
+    paths = os.pathsep.join(filter(None, sys.path))
+    server = subprocess.Popen(
+        [*command, "distributed.cli.dask_scheduler", *local, "--port", port], **quiet
+    )
+    worker = subprocess.Popen(
+        [*command, "distributed.cli.dask_worker", address, *local, "--no-nanny"],
+        env={**os.environ, "PYTHONPATH": paths},
+        **quiet,
+    )
+    try:
+        yield address, server
+    finally:
+        for process in (worker, server):
+            process.kill()
+            process.wait()
 
 
 def test_nothing_can_be_reached_from_other_machines(crew: Dask) -> None:

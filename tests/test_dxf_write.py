@@ -287,16 +287,40 @@ def test_the_note_gives_the_figures_of_the_report(tmp_path: Path) -> None:
 
 def test_names_in_the_note_cannot_give_orders_to_the_text_engine(tmp_path: Path) -> None:
     result = results.furnished_result()
-    robot = replace(result.report.robot, name="{\\H9;big}\n0\nEOF")
+    robot = replace(result.report.robot, name="{\\H9;big}\n0\nEOF^J%%c")
     report = replace(result.report, robot=robot)
     other = replace(result.robot, name="x\n  0\nEOF\n" + 300 * "y")
     odd = replace(result, report=report, search=replace(result.search, robot=other))
     document = written(odd, tmp_path / "a.dxf")
     texts = [e.plain_text() for e in on_layer(document, "SATAOI-NOTE") if e.dxftype() == "MTEXT"]
-    assert "{\\H9;big} 0 EOF, disc radius 350 mm" in texts
+    assert "{\\H9;big} 0 EOF^J% %c, disc radius 350 mm" in texts
     name = facts_of(on_layer(document, "SATAOI-AOI")[0])["robot"]
     assert isinstance(name, str)
     assert len(name) == 250
+
+
+def test_facts_fit_into_a_string_of_255_bytes_in_any_encoding(tmp_path: Path) -> None:
+    result = results.furnished_result()
+    other = replace(result.robot, name="壁" * 100)
+    document = written(
+        replace(result, search=replace(result.search, robot=other)), tmp_path / "a.dxf"
+    )
+    name = facts_of(on_layer(document, "SATAOI-AOI")[0])["robot"]
+    assert isinstance(name, str)
+    assert 0 < len(name) * len(r"\U+58C1") <= 255
+
+
+def test_a_long_name_makes_the_note_no_wider_than_what_is_shown_of_it(tmp_path: Path) -> None:
+    result = results.furnished_result()
+    widths = []
+    for n_letters in (100, 300):
+        robot = replace(result.report.robot, name="r" * n_letters)
+        odd = replace(result, report=replace(result.report, robot=robot))
+        document = written(odd, tmp_path / f"{n_letters}.dxf")
+        frame = next(e for e in on_layer(document, "SATAOI-NOTE") if e.dxftype() == "LWPOLYLINE")
+        x = [point[0] for point in frame.get_points()]
+        widths.append(max(x) - min(x))
+    assert widths[0] == widths[1]
 
 
 # --- where the note goes ---------------------------------------------------------------------

@@ -87,6 +87,13 @@ def test_a_folder_is_no_target_and_a_missing_one_is_named(tmp_path: Path) -> Non
         pytest.fail("the block must not be entered")
 
 
+def test_a_name_may_be_as_long_as_the_system_allows(tmp_path: Path) -> None:
+    name = "a" * 251 + ".dxf"
+    with written_whole(tmp_path / name) as stream:
+        stream.write(b"new")
+    assert names_in(tmp_path) == [name]
+
+
 def test_a_replaced_file_keeps_its_permissions(tmp_path: Path) -> None:
     target = tmp_path / "a.dxf"
     target.write_bytes(b"old")

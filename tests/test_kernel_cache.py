@@ -87,5 +87,7 @@ def test_an_empty_name_is_no_place(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv(VARIABLE, "")
     place = kernel_cache.place()
+    prepare()
+    assert os.environ[VARIABLE] == str(place)
     assert place is not None
     assert place.is_relative_to(tmp_path / "satAOI-geo")

@@ -56,6 +56,11 @@ def test_every_line_has_a_label_and_its_figure() -> None:
     assert lines["upper estimate"].startswith(f"{REPORT.disc_connected.area_m2:.2f} m²")
 
 
+def test_a_floor_with_crumbs_only_has_no_zone_and_says_so() -> None:
+    lines = dict(report_write.lines_of(replace(REPORT, zones=[])))
+    assert lines["zones"] == "none of 0.5 m² or more"
+
+
 def test_the_reasons_add_up_to_what_is_left_over() -> None:
     (_, total), *reasons = report_write.left_over(REPORT.unreached)
     figures = [float(value.split()[0]) for _, value in reasons]

@@ -119,6 +119,14 @@ def _without_spikes(chain: _Chain) -> _Chain:
 
     Cutting floor out of floor leaves both, and geometry kernels stumble over them.
     """
+    # without its tip a spike may have another one
+    while not (kept := _without_tips(chain)).all():
+        chain = _Chain.of(chain.corners[kept], chain.count(kept))
+    return chain
+
+
+def _without_tips(chain: _Chain) -> BoolArray:
+    """Which corners to keep: all but repeated ones and those where the ring turns back."""
     corners = chain.corners
     back, ahead = corners[chain.before] - corners, corners[chain.after] - corners
     lengths_mm = np.abs(back), np.abs(ahead)
@@ -128,11 +136,7 @@ def _without_spikes(chain: _Chain) -> _Chain:
     is_spike = (product.real > 0) & (width_mm <= ALIKE_MM)
     kept = ~is_spike & (lengths_mm[0] > ALIKE_MM)
     # a ring that would vanish stays as it is
-    kept |= np.repeat(chain.count(kept) < TRIANGLE, chain.sizes)
-    if kept.all():
-        return chain
-    # without its tip a spike may have another one
-    return _without_spikes(_Chain.of(corners[kept], chain.count(kept)))
+    return kept | np.repeat(chain.count(kept) < TRIANGLE, chain.sizes)
 
 
 def _circles(chain: _Chain) -> tuple[Points, BoolArray]:

@@ -87,7 +87,7 @@ def plans_of(patterns: Sequence[str]) -> list[Plan]:
     """The plans that names and patterns stand for, each once.
 
     Raises:
-        InputError: If one of them stands for no file.
+        InputError: If a pattern stands for no file, or a name for a folder.
     """
     found: dict[Path, Plan] = {}
     for pattern in patterns:
@@ -112,7 +112,7 @@ def names_in(out_dir: Path, plans: Sequence[Plan]) -> list[str]:
     """For each plan the name that its results begin with, all different.
 
     The folders below the one that all plans were sought in are those of the results. The plan's
-    suffix is a part of the name where two plans differ in nothing else.
+    suffix is a part of the name where two plans would have the same without it.
 
     Raises:
         InputError: If the plans lie on several drives.
@@ -122,10 +122,11 @@ def names_in(out_dir: Path, plans: Sequence[Plan]) -> list[str]:
     except ValueError as error:
         raise InputError("the plans lie on several drives; run a batch for each") from error
     files = [out_dir / plan.file.relative_to(common) for plan in plans]
-    stems = Counter(file.with_suffix("") for file in files)
-    return [
-        str(file if stems[file.with_suffix("")] > 1 else file.with_suffix("")) for file in files
-    ]
+    names = [file.with_suffix("") for file in files]
+    # with its suffix a plan may be called as another one is without
+    while alike := {name for name, n in Counter(names).items() if n > 1}:
+        names = [file if name in alike else name for file, name in zip(files, names, strict=True)]
+    return [str(name) for name in names]
 
 
 def tasks_of(

@@ -16,6 +16,7 @@ import logging
 import signal
 import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import CancelledError
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
@@ -155,7 +156,20 @@ class Dask:
     def outcomes(
         self, function: Callable[[TaskT], AnswerT], tasks: Iterable[TaskT]
     ) -> Generator[Outcome[AnswerT], None, None]:
-        """As in `Workers`."""
+        """As in `Workers`.
+
+        Raises:
+            LimitError: If all workers are lost, or the scheduler is.
+        """
+        try:
+            yield from self._outcomes(function, tasks)
+        except (CancelledError, OSError) as error:
+            # what the function raises is an outcome; this is what becomes of a lost connection
+            raise _all_lost() from error
+
+    def _outcomes(
+        self, function: Callable[[TaskT], AnswerT], tasks: Iterable[TaskT]
+    ) -> Generator[Outcome[AnswerT], None, None]:
         numbered = enumerate(tasks)
         numbers: dict[Future, int] = {}
         while True:
@@ -327,7 +341,8 @@ def _died(error: "KilledWorker") -> LimitError:
 
 def _all_lost() -> LimitError:
     return LimitError(
-        "all workers are lost; run this again, with --scheduler after starting some",
+        "all workers are lost, or their scheduler is; run this again, with --scheduler after "
+        "starting both",
         limit="workers",
         value=0,
         allowed=1,

@@ -31,7 +31,8 @@ def written_whole(path: Path, *, never_over: Iterable[Path] = ()) -> Iterator[Bi
             exist, or the file cannot be written.
     """
     refuse_unfit_target(path, never_over)
-    temporary = path.with_name(f".{path.name}.{os.urandom(4).hex()}.tmp")
+    # short, since a file's name may be as long as one can be
+    temporary = path.with_name(f".{os.urandom(8).hex()}.tmp")
     try:
         with temporary.open("xb") as stream:
             yield stream

@@ -20,7 +20,7 @@ VARIABLE = "NUMBA_CACHE_DIR"
 
 def prepare() -> None:
     """Choose the folder; the program's own may belong to somebody else."""
-    if VARIABLE not in os.environ:
+    if not os.environ.get(VARIABLE):
         os.environ[VARIABLE] = str(_own_folder())
 
 

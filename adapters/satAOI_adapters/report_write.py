@@ -6,6 +6,8 @@ from pathlib import Path
 from satAOI_adapters.files import json_of, written_whole
 from satAOI_geo.reasons import SENTENCES, Reason
 from satAOI_geo.report import PatchFigures, Report
+from satAOI_geo.units import MM2_PER_M2
+from satAOI_geo.zones import ZONE_MM2
 
 Line = tuple[str, str]
 """A label and what is said under it."""
@@ -48,6 +50,8 @@ def lines_of(report: Report) -> list[Line]:
 
 def zones_in_words(areas_m2: Sequence[float]) -> str:
     """What the robot trowels from each place it may be set down at, the largest few."""
+    if not areas_m2:
+        return f"none of {ZONE_MM2 / MM2_PER_M2:g} m² or more"
     told = ", ".join(f"{area_m2:.2f}" for area_m2 in areas_m2[:TOLD_ZONES])
     n_smaller = max(len(areas_m2) - TOLD_ZONES, 0)
     return f"{told} m²" + (f" and {n_smaller} smaller" if n_smaller else "")

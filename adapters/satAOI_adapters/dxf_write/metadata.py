@@ -1,5 +1,6 @@
 """What programs can read back from the drawing: facts on entities and the run's settings."""
 
+import itertools
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, replace
@@ -17,7 +18,10 @@ APPID: Final = "SATAOI"
 SCHEMA: Final = "sataoi-dxf/1"
 
 STRING_LIMIT: Final = 250
-"""Characters in one string: DXF allows 255 bytes, and some readers stop at a longer one."""
+"""Bytes in one string: DXF allows 255, and some readers stop at a longer one."""
+
+CODED: Final = len(r"\U+58C1")
+"""Bytes of a character that the file's encoding may lack."""
 
 SETTINGS: Final = ("robot", "lattice", "floor", "start", "aoi")
 """Sections of the report that go into the drawing besides the input."""
@@ -68,9 +72,15 @@ def _tags(facts: Facts) -> Iterator[tuple[int, str | int | float]]:
     for name, value in facts.items():
         yield 1000, name
         if isinstance(value, str):
-            yield 1000, one_line(value)[:STRING_LIMIT]
+            yield 1000, _cut(one_line(value))
         else:
             yield (1071 if isinstance(value, int) else 1040), value
+
+
+def _cut(text: str) -> str:
+    """As much of a text as fits into one string in any encoding."""
+    ends = itertools.accumulate(1 if character.isascii() else CODED for character in text)
+    return text[: sum(end <= STRING_LIMIT for end in ends)]
 
 
 def one_line(text: str) -> str:

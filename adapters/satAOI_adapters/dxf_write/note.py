@@ -52,7 +52,7 @@ def draw_note(space: Modelspace, plan: FloorPlan, rows: list[Row], taken: FloatA
     floor = floor_bounds(plan)
     height = text_height(floor)
     value_at = LABEL_AT + CHARACTER * max(len(row.label) for row in rows if row.value) + 1
-    width = value_at + CHARACTER * max(len(row.value) for row in rows)
+    width = value_at + CHARACTER * max(len(_cut(row.value)) for row in rows)
     size = (
         height * (width + 2 * MARGIN),
         height * (sum(_pitch(row) for row in rows) + 2 * MARGIN),
@@ -86,9 +86,8 @@ def _draw_row(
 
 
 def _draw_text(space: Modelspace, text: str, at: tuple[float, float], height: float) -> None:
-    shown = text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 3] + "..."
     space.add_mtext(
-        _escaped(one_line(shown)),
+        _escaped(one_line(_cut(text))),
         dxfattribs={
             "layer": NOTE.name,
             "style": TEXT_STYLE,
@@ -119,8 +118,13 @@ def _draw_swatch(space: Modelspace, swatch: Swatch, at: tuple[float, float], hei
     edge.dxf.lineweight = swatch.lineweight
 
 
+def _cut(text: str) -> str:
+    """As much of a text as is shown."""
+    return text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 3] + "..."
+
+
 def _escaped(text: str) -> str:
-    """Text without anything that MTEXT takes for an instruction."""
+    """Text without anything that MTEXT takes for an instruction, or for a sign by its code."""
     for special in ("\\", "{", "}"):
         text = text.replace(special, "\\" + special)
-    return text
+    return text.replace("^", "^ ").replace("%%", "% %")
