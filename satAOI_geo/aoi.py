@@ -15,7 +15,8 @@ import numpy as np
 import shapely
 from shapely.geometry import Polygon
 
-from satAOI_geo.discs import Arcs, boundary, covered_cells
+from satAOI_geo.cells import covered_cells
+from satAOI_geo.discs import Arcs, boundary
 from satAOI_geo.errors import InputError
 from satAOI_geo.lattice import WORD_BITS, Lattice
 from satAOI_geo.nodes import Nodes

@@ -30,6 +30,7 @@ import numpy as np
 
 from satAOI_geo.kernels import filled, helper, kernel
 from satAOI_geo.lattice import Lattice, Words
+from satAOI_geo.nodes import set_bits
 from satAOI_geo.pieces import Pieces
 from satAOI_geo.plan import CONTACT_MM, BoolArray, FloatArray, FloorPlan, IntArray
 from satAOI_geo.robot import Part, Robot
@@ -535,19 +536,3 @@ def _meet_hollow(
             ):
                 across = max((iy - vy) * slope, least)
                 left[iy - low] = min(left[iy - low], vx + across)
-
-
-@helper
-def set_bits(row: Words, begin: int, end: int) -> None:
-    """Set bits begin .. end of a row of words."""
-    every = np.uint64(0xFFFFFFFFFFFFFFFF)
-    first_word, last_word = begin >> 6, end >> 6
-    first_mask = every << np.uint64(begin & 63)
-    last_mask = every >> np.uint64(63 - (end & 63))
-    if first_word == last_word:
-        row[first_word] |= first_mask & last_mask
-        return
-    row[first_word] |= first_mask
-    for word in range(first_word + 1, last_word):
-        row[word] = every
-    row[last_word] |= last_mask

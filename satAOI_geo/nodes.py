@@ -101,3 +101,19 @@ def n_bits(bits: np.uint64) -> int:
 def lowest_bit(bits: np.uint64) -> int:
     """Number of the lowest set bit: how many lie below it."""
     return n_bits((bits & (~bits + np.uint64(1))) - np.uint64(1))
+
+
+@helper
+def set_bits(row: Words, begin: int, end: int) -> None:
+    """Set bits begin .. end of a row of words."""
+    every = np.uint64(0xFFFFFFFFFFFFFFFF)
+    first_word, last_word = begin >> 6, end >> 6
+    first_mask = every << np.uint64(begin & 63)
+    last_mask = every >> np.uint64(63 - (end & 63))
+    if first_word == last_word:
+        row[first_word] |= first_mask & last_mask
+        return
+    row[first_word] |= first_mask
+    for word in range(first_word + 1, last_word):
+        row[word] = every
+    row[last_word] |= last_mask

@@ -9,10 +9,9 @@ from typing import Final
 
 import numpy as np
 
-from satAOI_geo.intervals import set_bits
 from satAOI_geo.kernels import filled, kernel
 from satAOI_geo.lattice import WORD_BITS, Words
-from satAOI_geo.nodes import Nodes, lowest_bit
+from satAOI_geo.nodes import Nodes, lowest_bit, set_bits
 from satAOI_geo.plan import Int32Array, IntArray
 
 N_RUNS_A_ROW: Final = 8

@@ -10,10 +10,9 @@ from functools import reduce
 import numpy as np
 import numpy.typing as npt
 
-from satAOI_geo.intervals import set_bits
 from satAOI_geo.kernels import helper, kernel
 from satAOI_geo.lattice import WORD_BITS, Words
-from satAOI_geo.nodes import Nodes, lowest_bit
+from satAOI_geo.nodes import Nodes, lowest_bit, set_bits
 from satAOI_geo.plan import Int32Array, IntArray
 from satAOI_geo.runs import Runs, paint
 from satAOI_geo.threads import n_cores, run_threads

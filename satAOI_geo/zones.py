@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from satAOI_geo.aoi import Aoi, Outline, areas
-from satAOI_geo.discs import covered_cells
+from satAOI_geo.cells import covered_cells
 from satAOI_geo.kernels import helper, kernel
 from satAOI_geo.lattice import WORD_BITS, Lattice, Words
 from satAOI_geo.memory import give_back

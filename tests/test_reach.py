@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from shapely.geometry import LineString, box
 
+from satAOI_geo.cells import covered_cells
 from satAOI_geo.collision import Collider, Reference
-from satAOI_geo.discs import covered_cells
 from satAOI_geo.freespace import FreeSpace, Sweeps, free_space, moves
 from satAOI_geo.intervals import Intervals
 from satAOI_geo.lattice import Lattice

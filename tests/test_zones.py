@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from shapely.geometry import box
+from shapely.geometry import Polygon, box
 
+from satAOI_geo.cells import covered_cells
 from satAOI_geo.collision import Collider
-from satAOI_geo.discs import covered_cells
-from satAOI_geo.errors import NothingFreeError, StartBlockedError
+from satAOI_geo.errors import EmptyPlanError, NothingFreeError, StartBlockedError
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.nodes import Nodes
 from satAOI_geo.pipeline import Result, area_of_interest
@@ -154,6 +154,11 @@ def test_start_whose_pose_is_blocked_names_what_the_pose_touches() -> None:
 def test_floor_that_the_robot_does_not_fit_on_is_an_error() -> None:
     with pytest.raises(NothingFreeError, match="fits nowhere"):
         area_of_interest(FloorPlan(box(0, 0, 1000, 1000)), settings=SETTINGS)
+
+
+def test_a_plan_without_a_floor_is_an_error() -> None:
+    with pytest.raises(EmptyPlanError, match="no floor"):
+        area_of_interest(FloorPlan(Polygon()), settings=SETTINGS)
 
 
 def test_the_obstacle_that_takes_most_of_a_floor_without_free_poses_is_named() -> None:
