@@ -18,12 +18,12 @@ from satAOI_geo.nodes import Nodes
 from satAOI_geo.plan import (
     CONTACT_MM,
     BoolArray,
-    Circle,
     FloorPlan,
     IntArray,
     Obstacle,
-    Shape,
+    core_of,
     polygons_in,
+    radius_mm_of,
 )
 from satAOI_geo.robot import Part, Pose, Robot, unit
 from satAOI_geo.sweep import stepped
@@ -61,10 +61,9 @@ class Collider:
         # parts swept by a move reach beyond the robot by a step or the push of their hull
         outside = polygons_in([plan.outside(2 * robot.reach_mm + clearance_mm)])
         self._obstacles: list[Obstacle | None] = [*plan.obstacles, *(None for _ in outside)]
-        self._cores = np.array([*(_obstacle_core(o.shape) for o in plan.obstacles), *outside])
-        self._radii_mm = np.array(
-            [*(_obstacle_radius_mm(o.shape) for o in plan.obstacles), *(0.0 for _ in outside)]
-        )
+        shapes = [*(obstacle.shape for obstacle in plan.obstacles), *outside]
+        self._cores = np.array([core_of(shape) for shape in shapes])
+        self._radii_mm = np.array([radius_mm_of(shape) for shape in shapes])
         left, bottom, right, top = shapely.bounds(self._cores).T
         r_mm = self._radii_mm
         self._tree = shapely.STRtree(
@@ -142,16 +141,6 @@ def _part_core(part: Part) -> BaseGeometry:
     if len(part.corners_mm) == 1:
         return Point(part.corners_mm[0])
     return (LineString if len(part.corners_mm) == 2 else Polygon)(part.corners_mm)
-
-
-def _obstacle_core(shape: Shape) -> BaseGeometry:
-    """The shape itself, or the centre of a circle."""
-    return Point(shape.x_mm, shape.y_mm) if isinstance(shape, Circle) else shape
-
-
-def _obstacle_radius_mm(shape: Shape) -> float:
-    """How far a shape reaches beyond its core."""
-    return shape.radius_mm if isinstance(shape, Circle) else 0.0
 
 
 def _refuse_unsound_geos() -> None:

@@ -38,60 +38,47 @@ class StartAt(NamedTuple):
     angles_deg: tuple[float, float] | None = None
 
 
-def point(
-    context: click.Context, parameter: click.Parameter, text: str | None
-) -> tuple[float, float] | None:
-    """The two numbers of a point written `X,Y`."""
-    if text is None:
-        return None
-    try:
-        x, y = _numbers(text)
-    except ValueError as error:
-        message = f"'{text}' is not two numbers with a comma, as in 3200,1500.5"
-        raise click.BadParameter(message, ctx=context, param=parameter) from error
-    return x, y
+Parsed: TypeAlias = Callable[[click.Context, click.Parameter, str | None], tuple[float, ...] | None]
+"""What turns the text of an option into numbers; None where it was not given."""
+
+COUNTS: Final = {2: "two numbers with a comma", 4: "four numbers with commas"}
+"""How many numbers an option may take, in words."""
+
+
+def numbers(*examples: str) -> Parsed:
+    """What takes finite numbers with commas between them, as many as one of the examples has."""
+    by_count = {example.count(",") + 1: example for example in examples}
+    wanted = ", nor ".join(f"{COUNTS[n]}, as in {by_count[n]}" for n in by_count)
+
+    def parse(
+        context: click.Context, parameter: click.Parameter, text: str | None
+    ) -> tuple[float, ...] | None:
+        if text is None:
+            return None
+        try:
+            found = tuple(map(float, text.split(",")))
+        except ValueError:
+            found = ()
+        if len(found) not in by_count or not all(map(math.isfinite, found)):
+            raise click.BadParameter(f"'{text}' is not {wanted}", ctx=context, param=parameter)
+        return found
+
+    return parse
+
+
+point: Final = numbers("3200,1500.5")
+rectangle: Final = numbers("0,0,12000,9000")
 
 
 def start_at(
     context: click.Context, parameter: click.Parameter, text: str | None
 ) -> StartAt | None:
     """A start written `X,Y` or `X,Y,A1,A2`."""
-    if text is None:
+    found = numbers("3200,1500.5", "3200,1500.5,90,0")(context, parameter, text)
+    if found is None:
         return None
-    try:
-        x, y, *angles_deg = _numbers(text)
-        if not angles_deg:
-            return StartAt((x, y))
-        a1_deg, a2_deg = angles_deg
-    except ValueError as error:
-        message = (
-            f"'{text}' is not two numbers with a comma, as in 3200,1500.5, nor four, as in "
-            "3200,1500.5,90,0"
-        )
-        raise click.BadParameter(message, ctx=context, param=parameter) from error
-    return StartAt((x, y), (a1_deg, a2_deg))
-
-
-def rectangle(
-    context: click.Context, parameter: click.Parameter, text: str | None
-) -> tuple[float, float, float, float] | None:
-    """The four numbers of a rectangle written `LEFT,BOTTOM,RIGHT,TOP`."""
-    if text is None:
-        return None
-    try:
-        left, bottom, right, top = _numbers(text)
-    except ValueError as error:
-        message = f"'{text}' is not four numbers with commas, as in 0,0,12000,9000"
-        raise click.BadParameter(message, ctx=context, param=parameter) from error
-    return left, bottom, right, top
-
-
-def _numbers(text: str) -> list[float]:
-    """Finite numbers written with commas between them; anything else is a ValueError."""
-    numbers = [float(number) for number in text.split(",")]
-    if not all(map(math.isfinite, numbers)):
-        raise ValueError(text)
-    return numbers
+    x, y, *angles_deg = found
+    return StartAt((x, y), (angles_deg[0], angles_deg[1]) if angles_deg else None)
 
 
 def direction(context: click.Context, parameter: click.Parameter, text: str | None) -> float | None:

@@ -26,6 +26,7 @@ from satAOI_geo.plan import (
     IntArray,
     Shape,
     polygons_in,
+    radius_mm_of,
 )
 
 
@@ -65,8 +66,7 @@ class Pieces:
         for shape in shapes:
             of_shape = list(_rings(shape, lattice))
             rings += of_shape
-            radius_mm = shape.radius_mm if isinstance(shape, Circle) else 0.0
-            radii_mm += [radius_mm] * len(of_shape)
+            radii_mm += [radius_mm_of(shape)] * len(of_shape)
         x, y = np.concatenate(rings).T
         starts = _starts([len(ring) for ring in rings])
         bottom = np.minimum.reduceat(y, starts[:-1])

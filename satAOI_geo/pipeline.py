@@ -1,5 +1,6 @@
 """The program on half a page: plan → free space → reached set → area → reasons → figures."""
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -92,18 +93,9 @@ def area_of_interest(
     """
     watch = Stopwatch(progress)
     found = search(plan, robot, settings, start=start, watch=watch, crew=crew)
-    lattice, disc_mm = found.lattice, robot.disc_radius_mm
     with watch.stage("area"):
         areas = _areas(found)
     aoi, upper = areas[settings.connectivity], areas["disc"]
-    # its outline would be another one than that of the others
-    known = {} if settings.exact_outline else {found.start.pose_label: areas["pose"]}
-
-    def of_zones() -> tuple[tuple[Zone, ...], tuple[SetDown, ...]]:
-        with watch.stage("zones") as share:
-            of_components = zones(found.pose, lattice, disc_mm, known, share)
-            states = {zone.label: zone.set_down for zone in of_components}
-            return of_components, set_downs(found.pose, found.free, lattice, disc_mm, states)
 
     def of_patches() -> tuple[Patch, ...]:
         with watch.stage("reasons") as share:
@@ -111,7 +103,8 @@ def area_of_interest(
 
     with ThreadPoolExecutor(max_workers=1) as beside:
         waiting = beside.submit(of_patches)
-        all_zones, downs = of_zones()
+        with watch.stage("zones") as share:
+            all_zones, downs = _zones(found, areas["pose"], share)
         patches = waiting.result()
     if len(found.pose.bands) > 1:
         # what both threads took is free now, and figures of a large floor take room, too
@@ -125,6 +118,18 @@ def area_of_interest(
         timing_s=watch.timing_s,
     )
     return Result(found, aoi, upper, all_zones, downs, patches, report)
+
+
+def _zones(
+    found: Search, of_start: Aoi, progress: Callable[[float], None]
+) -> tuple[tuple[Zone, ...], tuple[SetDown, ...]]:
+    """The zones and the set-downs; what is pose-connected with the start is known already."""
+    lattice, disc_mm = found.lattice, found.robot.disc_radius_mm
+    # its outline would be another one than that of the others
+    known = {} if found.settings.exact_outline else {found.start.pose_label: of_start}
+    all_zones = zones(found.pose, lattice, disc_mm, known, progress)
+    states = {zone.label: zone.set_down for zone in all_zones}
+    return all_zones, set_downs(found.pose, found.free, lattice, disc_mm, states)
 
 
 def _areas(found: Search) -> dict[Connectivity, Aoi]:

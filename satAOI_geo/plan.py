@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 import shapely.affinity
-from shapely.geometry import LineString, MultiPolygon, Polygon, box
+from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -78,6 +78,16 @@ Shape: TypeAlias = Polygon | LineString | Circle
 def geometry_of(shape: Shape) -> Polygon | LineString:
     """A shape as shapely sees it; a circle as a polygon of the same area."""
     return shape.polygon() if isinstance(shape, Circle) else shape
+
+
+def core_of(shape: Shape) -> Polygon | LineString | Point:
+    """What a shape is all points within `radius_mm_of` it of: itself, or the centre of a circle."""
+    return Point(shape.x_mm, shape.y_mm) if isinstance(shape, Circle) else shape
+
+
+def radius_mm_of(shape: Shape) -> float:
+    """How far a shape reaches beyond its core."""
+    return shape.radius_mm if isinstance(shape, Circle) else 0.0
 
 
 @dataclass(frozen=True, slots=True)

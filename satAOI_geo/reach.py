@@ -27,7 +27,7 @@ from satAOI_geo.freespace import FreeSpace, Move, Sweeps, moves
 from satAOI_geo.lattice import WORD_BITS, Lattice
 from satAOI_geo.meeting import Meeting, unite_poses, unite_upwards
 from satAOI_geo.nodes import Nodes
-from satAOI_geo.plan import Int32Array
+from satAOI_geo.plan import Int32Array, IntArray
 from satAOI_geo.robot import Robot
 from satAOI_geo.runs import Runs, SliceRuns, rows_of
 from satAOI_geo.stretches import Stretches, of_runs
@@ -63,9 +63,9 @@ class DiscComponents:
 
     shape: tuple[int, int]
     rows: SliceRuns
-    labels: npt.NDArray[np.int32]
+    labels: Int32Array
     stretches: Stretches
-    boxes: npt.NDArray[np.int64]
+    boxes: IntArray
 
     @classmethod
     def of(cls, free: Nodes) -> "DiscComponents":
@@ -86,7 +86,7 @@ class DiscComponents:
         stretches = Stretches.of(labels, row.astype(np.int32), rows.begin, rows.end, n_sets)
         return cls(free.shape, rows, labels, stretches, stretches.boxes())
 
-    def labels_at(self, iy: npt.ArrayLike, ix: npt.ArrayLike) -> npt.NDArray[np.int32]:
+    def labels_at(self, iy: npt.ArrayLike, ix: npt.ArrayLike) -> Int32Array:
         """The sets that hold some nodes, -1 for those where no pose is free; shape as iy and ix."""
         width = self.shape[1] + 1
         row = self.rows.rows()
@@ -120,7 +120,7 @@ class Band:
     lattice: Lattice
     runs: Runs
     labels: Int32Array
-    lowest: npt.NDArray[np.int64]
+    lowest: IntArray
     stretches: tuple[Int32Array, ...]
     pages: tuple[mmap.mmap, ...] = ()
 
@@ -179,7 +179,7 @@ class Band:
         runs = replace(self.runs, begin=begin, end=end)
         return replace(self, runs=runs, labels=labels, pages=pages)
 
-    def at(self, iy: int, ix: int) -> npt.NDArray[np.int32]:
+    def at(self, iy: int, ix: int) -> Int32Array:
         """The set that holds each pose at a node, row iy of the whole lattice, or -1.
 
         Shape (n_directions, n_swings).
@@ -190,7 +190,7 @@ class Band:
         self._let_go()
         return sets
 
-    def on_row(self, iy: int) -> npt.NDArray[np.int32]:
+    def on_row(self, iy: int) -> Int32Array:
         """The sets of the runs on one of its rows, pose after pose."""
         first = self.runs.first.reshape(-1, self.runs.first.shape[-1])
         spans = zip(first[:, iy].tolist(), first[:, iy + 1].tolist(), strict=True)
@@ -220,9 +220,9 @@ class PoseComponents:
 
     lattice: Lattice
     bands: tuple[Band, ...]
-    numbers: tuple[npt.NDArray[np.int32], ...]
+    numbers: tuple[Int32Array, ...]
     stretches: Stretches
-    boxes: npt.NDArray[np.int64]
+    boxes: IntArray
 
     @classmethod
     def of(cls, lattice: Lattice, bands: Sequence[Band]) -> "PoseComponents":
@@ -271,12 +271,12 @@ class PoseComponents:
         """Where the set has some pose, in all of the lattice or in a window that holds the set."""
         return self.stretches.nodes(label, *_ranges(self.lattice.shape, rows, columns))
 
-    def first_nodes(self) -> npt.NDArray[np.int32]:
+    def first_nodes(self) -> Int32Array:
         """Row and column of the first node of each set, shape (n, 2)."""
         first = self.stretches.first[:-1]
         return np.column_stack((self.stretches.row[first], self.stretches.begin[first]))
 
-    def _labels_at(self, iy: int, ix: int) -> npt.NDArray[np.int32]:
+    def _labels_at(self, iy: int, ix: int) -> Int32Array:
         """The set that holds each pose at a node, or -1; shape (n_directions, n_swings)."""
         tops = [band.lattice.first_row + band.lattice.n_rows for band in self.bands]
         number = int(np.searchsorted(tops, iy, side="right"))

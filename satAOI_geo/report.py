@@ -193,6 +193,18 @@ class AoiFigures:
     percent_of_free: float
     n_parts: int
 
+    @classmethod
+    def of(cls, connectivity: Connectivity, aoi: Aoi, floor: FloorFigures) -> "AoiFigures":
+        """The figures of the area on a floor."""
+        area_m2 = aoi.area_mm2 / MM2_PER_M2
+        return cls(
+            connectivity=connectivity,
+            area_m2=area_m2,
+            raster_area_m2=aoi.raster_area_mm2 / MM2_PER_M2,
+            percent_of_free=100 * area_m2 / floor.free_area_m2,
+            n_parts=len(aoi.outlines),
+        )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ZoneFigures:
@@ -202,6 +214,20 @@ class ZoneFigures:
     area_m2: float
     n_nodes: int
     set_down: PoseFigures
+
+    @classmethod
+    def of(cls, found: Search, zones: Sequence[Zone]) -> list["ZoneFigures"]:
+        """The zones, numbered from the first."""
+        poses = PoseFigures.of(found, [zone.set_down for zone in zones])
+        return [
+            cls(
+                number=number,
+                area_m2=zone.area_mm2 / MM2_PER_M2,
+                n_nodes=zone.n_nodes,
+                set_down=pose,
+            )
+            for number, (zone, pose) in enumerate(zip(zones, poses, strict=True), start=1)
+        ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -214,6 +240,18 @@ class SetDownFigures:
     zone: int | None
     gain_m2: float
     set_down: PoseFigures
+
+    @classmethod
+    def of(
+        cls, found: Search, set_downs: Sequence[SetDown], zones: Sequence[Zone]
+    ) -> list["SetDownFigures"]:
+        """Some set-downs, with the numbers of their zones."""
+        numbers = {zone.label: number for number, zone in enumerate(zones, start=1)}
+        poses = PoseFigures.of(found, [one.state for one in set_downs])
+        return [
+            cls(zone=numbers.get(one.label), gain_m2=one.gain_mm2 / MM2_PER_M2, set_down=pose)
+            for one, pose in zip(set_downs, poses, strict=True)
+        ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -275,56 +313,23 @@ def report_of(
     timing_s: dict[str, float],
 ) -> Report:
     """Gather the figures of a run; areas are given for `disc` and `pose`."""
-    plan, connectivity = found.plan, found.settings.connectivity
+    plan, start, connectivity = found.plan, found.start, found.settings.connectivity
     floor = FloorFigures.of(plan)
-    n_nodes = {
-        "disc": found.disc.stretches.count(found.start.disc_label),
-        "pose": found.pose.stretches.count(found.start.pose_label),
-    }
-    connected = {rule: ConnectedFigures.of(n_nodes[rule], aoi) for rule, aoi in areas.items()}
-    numbers = {zone.label: number for number, zone in enumerate(zones, start=1)}
-    (started,) = PoseFigures.of(found, [found.start.state])
+    (pose,) = PoseFigures.of(found, [start.state])
+    disc_nodes = found.disc.stretches.count(start.disc_label)
+    pose_nodes = found.pose.stretches.count(start.pose_label)
     return Report(
         input=InputFigures.of(plan),
         robot=RobotFigures.of(found.robot, found.settings.clearance_mm),
         lattice=LatticeFigures.of(found),
         floor=floor,
-        start=StartFigures(
-            **asdict(started),
-            source=found.start.source,
-            n_components=found.start.n_components,
-        ),
+        start=StartFigures(**asdict(pose), source=start.source, n_components=start.n_components),
         free=FreeFigures(n_nodes=found.free.count(), n_states=found.n_states),
-        disc_connected=connected["disc"],
-        pose_connected=connected["pose"],
-        aoi=AoiFigures(
-            connectivity=connectivity,
-            area_m2=connected[connectivity].area_m2,
-            raster_area_m2=connected[connectivity].raster_area_m2,
-            percent_of_free=100 * connected[connectivity].area_m2 / floor.free_area_m2,
-            n_parts=len(areas[connectivity].outlines),
-        ),
-        zones=[
-            ZoneFigures(
-                number=numbers[zone.label],
-                area_m2=zone.area_mm2 / MM2_PER_M2,
-                n_nodes=zone.n_nodes,
-                set_down=set_down,
-            )
-            for zone, set_down in zip(
-                zones, PoseFigures.of(found, [zone.set_down for zone in zones]), strict=True
-            )
-        ],
-        set_downs=[
-            SetDownFigures(
-                zone=numbers.get(one.label),
-                gain_m2=one.gain_mm2 / MM2_PER_M2,
-                set_down=set_down,
-            )
-            for one, set_down in zip(
-                set_downs, PoseFigures.of(found, [one.state for one in set_downs]), strict=True
-            )
-        ],
+        disc_connected=ConnectedFigures.of(disc_nodes, areas["disc"]),
+        pose_connected=ConnectedFigures.of(pose_nodes, areas["pose"]),
+        aoi=AoiFigures.of(connectivity, areas[connectivity], floor),
+        zones=ZoneFigures.of(found, zones),
+        set_downs=SetDownFigures.of(found, set_downs, zones),
         unreached=PatchFigures.of(plan, patches),
         findings=list(plan.findings),
         timing_s=timing_s,

@@ -11,7 +11,6 @@ from enum import StrEnum
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse
 from scipy.sparse.csgraph import breadth_first_order
 
@@ -19,6 +18,7 @@ from satAOI_geo.errors import LimitError, NoRouteError
 from satAOI_geo.freespace import Sweeps, free_space, moves
 from satAOI_geo.lattice import Lattice
 from satAOI_geo.meeting import Meeting
+from satAOI_geo.plan import Int32Array, IntArray
 from satAOI_geo.reach import State
 from satAOI_geo.robot import Pose
 from satAOI_geo.search import Search
@@ -151,7 +151,7 @@ class RouteMap:
         states.extend(_walk(state, min(max(state.ix, int(begin[goal])), int(end[goal]))))
         return Route(self._search.lattice, tuple(states), at_mm)
 
-    def _links(self) -> npt.NDArray[np.int64]:
+    def _links(self) -> IntArray:
         """What links the component's runs, both ways: a run, another, a column; shape (n, 3)."""
         found = self._search
         inside = np.zeros(self._rows.size, dtype=np.bool_)
@@ -159,7 +159,7 @@ class RouteMap:
         space = free_space(found.engine, found.robot, found.lattice)
         sweeps = Sweeps.of(found.robot, found.lattice)
 
-        def gather(a1: int) -> npt.NDArray[np.int32]:
+        def gather(a1: int) -> Int32Array:
             runs = self._band.runs
             pairs = [
                 Meeting.upwards(runs, (a1, swing)).links(allowed)
@@ -174,9 +174,7 @@ class RouteMap:
         pairs[:, :2] = np.searchsorted(self._runs, pairs[:, :2])
         return np.concatenate((pairs, pairs[:, (1, 0, 2)]))
 
-    def _covering_columns(
-        self, at_mm: tuple[float, float]
-    ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    def _covering_columns(self, at_mm: tuple[float, float]) -> tuple[IntArray, IntArray]:
         """For each run its first and last column whose disc covers a point; none: first > last."""
         lattice, runs = self._search.lattice, self._band.runs
         step_mm = lattice.step_mm

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
-import numpy.typing as npt
 
 from satAOI_geo.kernels import helper, kernel
 from satAOI_geo.lattice import WORD_BITS, Words
@@ -44,7 +43,7 @@ class Stretches:
         counts = np.bincount(labels, minlength=n_sets)
         return cls(np.concatenate(([0], np.cumsum(counts))).astype(np.int64), row, begin, end)
 
-    def boxes(self) -> npt.NDArray[np.int64]:
+    def boxes(self) -> IntArray:
         """Least row, least column, greatest row, greatest column of each set, shape (n, 4)."""
         first, last = self.first[:-1], self.first[1:] - 1
         if not first.size:

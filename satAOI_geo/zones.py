@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Final, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from satAOI_geo.aoi import Aoi, Outline, areas
 from satAOI_geo.cells import covered_cells
@@ -29,7 +28,7 @@ class Components(Protocol):
     """Connected sets of nodes, numbered 0 .. n - 1."""
 
     @property
-    def boxes(self) -> npt.NDArray[np.int64]:
+    def boxes(self) -> IntArray:
         """Shape (n, 4), least row, least column, greatest row, greatest column of each set."""
 
     def nodes(self, label: int, rows: slice, columns: slice) -> Nodes:
@@ -170,12 +169,12 @@ class _Gains:
             first, which is put in its place when it is asked for.
     """
 
-    boxes: npt.NDArray[np.int64]
+    boxes: IntArray
     at_most: FloatArray
     heap: Int32Array
 
     @classmethod
-    def of(cls, boxes: npt.NDArray[np.int64], at_most: FloatArray) -> "_Gains":
+    def of(cls, boxes: IntArray, at_most: FloatArray) -> "_Gains":
         """The sets in order."""
         return cls(boxes, at_most, np.argsort(-at_most, kind="stable").astype(np.int32))
 
@@ -214,7 +213,7 @@ def _covered(
             give_back()
 
 
-def _batches(boxes: npt.NDArray[np.int64], labels: list[int]) -> Iterator[list[int]]:
+def _batches(boxes: IntArray, labels: list[int]) -> Iterator[list[int]]:
     """Sets whose windows, one above the other, are not too large; a large set has its own."""
     batch: list[int] = []
     n_rows = n_columns = 0
@@ -315,19 +314,17 @@ def _area_mm2(components: Components, label: int, lattice: Lattice, disc_mm: flo
     return cells.count() * lattice.step_mm**2
 
 
-def _area_bounds_mm2(
-    boxes: npt.NDArray[np.int64], disc_mm: float, step_mm: float
-) -> npt.NDArray[np.float64]:
+def _area_bounds_mm2(boxes: IntArray, disc_mm: float, step_mm: float) -> FloatArray:
     """No component covers more than the cells of its box grown by the disc: a rounded rectangle.
 
     That holds for the outline and for the raster, whose cells reach half a step beyond the disc.
     """
     sides_mm = (boxes[:, 2:] - boxes[:, :2] + 1) * step_mm + 2 * disc_mm
-    bounds: npt.NDArray[np.float64] = sides_mm.prod(axis=1) - (4 - math.pi) * disc_mm**2
+    bounds: FloatArray = sides_mm.prod(axis=1) - (4 - math.pi) * disc_mm**2
     return bounds
 
 
-def _window(box: npt.NDArray[np.int64], lattice: Lattice, disc_mm: float) -> tuple[slice, slice]:
+def _window(box: IntArray, lattice: Lattice, disc_mm: float) -> tuple[slice, slice]:
     """Rows and columns that hold a box of nodes and all that the disc covers from them."""
     low, left, high, right = box.tolist()
     return lattice.around(slice(low, high + 1), slice(left, right + 1), disc_mm)

@@ -209,7 +209,7 @@ def test_a_run_ends_with_the_process_that_started_it(tmp_path: Path) -> None:
     psutil = pytest.importorskip("psutil")
     run = """
 import time
-from satAOI_adapters.batch import end_with_the_caller
+from satAOI_adapters.lifeline import end_with_the_caller
 end_with_the_caller()
 open("begun", "w").close()
 time.sleep(60)

@@ -20,7 +20,7 @@ def room(tmp_path: Path) -> Path:
     [
         (["--start", "1"], 2, "'1' is not two numbers with a comma"),
         (["--start", "1;2"], 2, "'1;2' is not two numbers with a comma"),
-        (["--start", "1,2,3"], 2, "nor four, as in 3200,1500.5,90,0"),
+        (["--start", "1,2,3"], 2, "nor four numbers with commas, as in 3200,1500.5,90,0"),
         (["--start", "nan,0"], 2, "'nan,0' is not two numbers with a comma"),
         (["--start", "1,2,0,inf"], 2, "'1,2,0,inf' is not two numbers"),
         (["--start", "1000,1000,0,91"], 2, "from -90° to 90°; give a start within"),

@@ -12,22 +12,22 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 import satAOI_geo
+from satAOI_adapters import lifeline
 from satAOI_adapters.batch_results import Row, printable, save
 from satAOI_adapters.cluster import Outcome, Workers
 from satAOI_geo.errors import InputError, LimitError
 
 PROGRAM: Final = f"""
 import sys
-from {__name__} import end_with_the_caller
+from {lifeline.__name__} import end_with_the_caller
 from satAOI_geo.program import main
 end_with_the_caller()
 sys.exit(main())
@@ -236,7 +236,7 @@ def run_plan(task: Task) -> Row:
             Path(task.folder, old).unlink()
     files = [f"--output={task.output}", f"--report={task.report}", "--quiet", "--", task.plan]
     begin_s = time.perf_counter()
-    with _lifeline() as stdin:
+    with lifeline.tied() as stdin:
         done = subprocess.run(  # noqa: S603  our own program, by our own interpreter
             [sys.executable, "-c", PROGRAM, "run", *task.options, *files],
             cwd=task.folder,
@@ -264,33 +264,6 @@ def run_plan(task: Task) -> Row:
         asked=task.asked,
         version=satAOI_geo.__version__,
     )
-
-
-@contextlib.contextmanager
-def _lifeline() -> Iterator[int]:
-    """An input for another process that holds nothing and ends when this process does."""
-    read_end, write_end = os.pipe()
-    try:
-        yield read_end
-    finally:
-        os.close(read_end)
-        os.close(write_end)
-
-
-def end_with_the_caller() -> None:
-    """In a run: interrupt it when the process that started it is gone, whatever became of that.
-
-    Another worker may have been given the same plan since.
-    """
-
-    def wait() -> None:
-        os.read(sys.stdin.fileno(), 1)
-        os.kill(os.getpid(), signal.SIGINT)
-
-    if sys.platform != "win32":
-        # workers are deaf to interrupts, and so is what they start
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-    threading.Thread(target=wait, daemon=True).start()
 
 
 def failed(task: Task, exit_code: int, message: str, *, time_s: float = 0.0) -> Row:

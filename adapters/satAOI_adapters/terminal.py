@@ -122,7 +122,10 @@ def counted(total: int, *, quiet: bool) -> Iterator[Callable[[str], None]]:
 
     With an estimate of the time that they will take; gone when all are done.
     """
-    from rich.console import Console
+    console = _watched(quiet=quiet)
+    if console is None:
+        yield lambda _: None
+        return
     from rich.progress import (
         BarColumn,
         MofNCompleteColumn,
@@ -131,14 +134,12 @@ def counted(total: int, *, quiet: bool) -> Iterator[Callable[[str], None]]:
         TimeRemainingColumn,
     )
 
-    console = Console(stderr=True)
     columns = (
         MofNCompleteColumn(),
         BarColumn(),
         TimeRemainingColumn(),
         TextColumn("{task.description}", markup=False),
     )
-    hidden = quiet or not console.is_terminal
-    with Progress(*columns, console=console, transient=True, disable=hidden) as bar:
+    with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task("", total=total)
         yield lambda name: bar.update(task, description=name, advance=1)
