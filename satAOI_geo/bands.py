@@ -4,6 +4,7 @@ Each band has the first row of the next one, on which both have the same states;
 are joined afterwards. The answer is the same to the last bit however the floor is cut.
 """
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final, Protocol, TypeVar
@@ -11,6 +12,7 @@ from typing import Final, Protocol, TypeVar
 import numpy as np
 
 from satAOI_geo.engine import Engine
+from satAOI_geo.errors import LimitError
 from satAOI_geo.freespace import free_space
 from satAOI_geo.lattice import WORD_BITS, Lattice
 from satAOI_geo.memory import give_back
@@ -23,6 +25,9 @@ BYTES_PER_GB: Final = 1e9
 
 SPACES_AT_ONCE: Final = 3
 """A free space, its runs, and what is in the hands of the threads take this many times its size."""
+
+MOST_BANDS: Final = 200
+"""Each has a file of its own, of which some systems open no more than 256 at a time."""
 
 BANDS_FOR_A_CREW: Final = 8
 """Into at least so many bands a floor is cut for several workers to share."""
@@ -100,6 +105,10 @@ def all_explored(
         memory_gb: What the search of a band may take, `SPACES_AT_ONCE` times its free space.
         watch: Times the stages.
         crew: Workers that search the bands; without them they are searched here, in turn.
+
+    Raises:
+        LimitError: If so little memory cuts the floor into too many bands, or there is no room for
+            what they find.
     """
     n_bands = 1 if crew is None else BANDS_FOR_A_CREW
     tasks = [
@@ -149,12 +158,26 @@ def _by_crew(
 
 
 def _cuts(lattice: Lattice, memory_gb: float, n_bands: int) -> Iterator[tuple[slice, int]]:
-    """Rows of each band, at least some number of bands, and how many of them are its own."""
+    """Rows of each band, at least some number of bands, and how many of them are its own.
+
+    Raises:
+        LimitError: If there would be more than `MOST_BANDS`.
+    """
     n_poses = lattice.n_directions * len(lattice.swings)
     row_bytes = n_poses * -(-lattice.n_columns // WORD_BITS) * WORD_BITS // 8
     # there may be no end of memory
     n_fitting = min(memory_gb * BYTES_PER_GB / (SPACES_AT_ONCE * row_bytes), lattice.n_rows)
     n_own = max(1, min(int(n_fitting), -(-lattice.n_rows // n_bands)))
+    if n_own * MOST_BANDS < lattice.n_rows:
+        least_gb = -(-lattice.n_rows // MOST_BANDS) * SPACES_AT_ONCE * row_bytes / BYTES_PER_GB
+        raise LimitError(
+            f"a memory of {memory_gb:g} GB would cut this floor into "
+            f"{-(-lattice.n_rows // n_own)} bands, more than {MOST_BANDS}; give --memory "
+            f"{math.ceil(least_gb * 1e4) / 1e4:g} or more",
+            limit="bands",
+            value=-(-lattice.n_rows // n_own),
+            allowed=MOST_BANDS,
+        )
     for begin in range(0, lattice.n_rows, n_own):
         end = min(begin + n_own, lattice.n_rows)
         yield slice(begin, min(end + 1, lattice.n_rows)), end - begin

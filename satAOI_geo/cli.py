@@ -159,12 +159,14 @@ def batch(context: click.Context, *, quiet: bool, **options: Unpack[BatchOptions
     from satAOI_adapters.batch import plans_of, rows_kept, run_all, tasks_of
     from satAOI_adapters.batch_results import earlier_rows
     from satAOI_adapters.cluster import workers
+    from satAOI_adapters.layers import layer_table
     from satAOI_adapters.robot_read import robot_from
     from satAOI_adapters.terminal import counted
 
     kernel_cache.prepare()
     # what every run would refuse is refused once
     robot_from(options["robot"])
+    layer_table(options["layers"])
     settings_of(options, exact_outline=options["exact_outline"])
     plans, out_dir = plans_of(options["plans"]), options["out_dir"]
     own = {*Batch.__annotations__, "quiet"}

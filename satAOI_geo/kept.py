@@ -24,8 +24,11 @@ def write(path: str, content: bytes) -> None:
     Processes may do so at the same time; each writes a file of its own and renames it.
     """
     unfinished = f"{path}.{os.getpid()}"
-    with suppress(OSError):
+    try:
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(unfinished, "wb") as file:
             file.write(hashlib.sha256(content).digest() + content)
         os.replace(unfinished, path)
+    except OSError:
+        with suppress(OSError):
+            os.remove(unfinished)

@@ -170,7 +170,7 @@ BATCH: Final[Group] = (
     click.option(
         "--out-dir",
         metavar="FOLDER",
-        type=FILE,
+        type=click.Path(file_okay=False, path_type=Path),
         required=True,
         panel="The batch",
         help="Where the results go, e.g. --out-dir results; it is made if there is none.",

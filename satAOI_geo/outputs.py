@@ -51,9 +51,9 @@ def refuse_targets(files: Sequence[Path], read: list[Path | None]) -> None:
     seen: list[Path] = []
     for path in files:
         refuse_unfit_target(path, [one for one in read if one is not None])
-        if path.absolute() in seen:
+        if path.resolve() in seen:
             raise InputError(f"'{path}' is asked for twice; give each output a name of its own")
-        seen.append(path.absolute())
+        seen.append(path.resolve())
 
 
 def areas_of(outputs: Outputs) -> list[Path]:

@@ -6,11 +6,14 @@ What takes time to load is imported by functions, so that an interrupt meanwhile
 from collections.abc import Sequence
 from typing import Final
 
+from satAOI_adapters import signals
 from satAOI_adapters.terminal import accept_any_text, say_error
 from satAOI_geo.errors import DrawingError, InputError, LimitError, SatAoiError, StartError
 
 USAGE: Final = 2
-INTERRUPTED: Final = 130
+SIGNALLED: Final = 128
+"""A process that signal N has ended has the exit code 128 + N, as in shells."""
+INTERRUPTED: Final = SIGNALLED + 2
 EXIT_CODES: Final[dict[type[SatAoiError], int]] = {
     InputError: USAGE,
     DrawingError: 3,
@@ -22,8 +25,9 @@ EXIT_CODES: Final[dict[type[SatAoiError], int]] = {
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the program and return its exit code; a known error becomes one line of talk."""
     try:
-        make_ready()
-        return run(arguments)
+        with signals.raised():
+            make_ready()
+            return run(arguments)
     except SatAoiError as error:
         say_error(str(error))
         return next(code for sort, code in EXIT_CODES.items() if isinstance(error, sort))
@@ -36,6 +40,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         say_error("interrupted")
         return INTERRUPTED
+    except signals.EndedError as ended:
+        say_error(str(ended))
+        return SIGNALLED + ended.number
 
 
 def run(arguments: Sequence[str] | None) -> int:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from tempfile import TemporaryFile
+from tempfile import TemporaryFile, gettempdir
 from threading import Lock
 from typing import Final, NamedTuple
 
@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from satAOI_geo.engine import Engine
+from satAOI_geo.errors import LimitError
 from satAOI_geo.forest import numbered, roots, unite
 from satAOI_geo.freespace import FreeSpace, Move, Sweeps, moves
 from satAOI_geo.lattice import WORD_BITS, Lattice
@@ -114,7 +115,7 @@ class Band:
             states by row, pose and column, the same however a lattice is cut into bands.
         stretches: The nodes of each set: label, row of the whole lattice, first and last column;
             nothing once they are gathered from all bands.
-        pages: Of the files that the runs are in, if they are.
+        pages: Of the file that the runs are in, if they are.
     """
 
     lattice: Lattice
@@ -122,7 +123,7 @@ class Band:
     labels: Int32Array
     lowest: IntArray
     stretches: tuple[Int32Array, ...]
-    pages: tuple[mmap.mmap, ...] = ()
+    pages: mmap.mmap | None = None
 
     @classmethod
     def of(
@@ -171,11 +172,31 @@ class Band:
         return cls(lattice, runs, labels, lowest, stretches)
 
     def aside(self) -> "Band":
-        """The same band with its runs in files that the system maps into memory as needed."""
-        begin, of_begin = _in_file(self.runs.begin)
-        end, of_end = _in_file(self.runs.end)
-        labels, of_labels = _in_file(self.labels)
-        pages = tuple(each for each in (of_begin, of_end, of_labels) if each is not None)
+        """The same band with its runs in a file that the system maps into memory as needed.
+
+        The file has no name and is gone with the last array that shows it.
+
+        Raises:
+            LimitError: If there is no room for it.
+        """
+        columns = np.stack((self.runs.begin, self.runs.end, self.labels))
+        if not columns.size:
+            return self
+        try:
+            with TemporaryFile() as file:
+                file.write(columns.data)
+                file.flush()
+                pages = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+        except OSError as error:
+            raise LimitError(
+                f"the runs of a band do not go into the folder '{gettempdir()}' for temporary "
+                f"files: {error.strerror or error}; name another one by TMPDIR, or give more "
+                "--memory",
+                limit="scratch",
+                value=columns.nbytes,
+                allowed=0,
+            ) from error
+        begin, end, labels = np.frombuffer(pages, dtype=columns.dtype).reshape(columns.shape)
         runs = replace(self.runs, begin=begin, end=end)
         return replace(self, runs=runs, labels=labels, pages=pages)
 
@@ -200,9 +221,8 @@ class Band:
 
     def _let_go(self) -> None:
         """Let what was read of files not count as memory of this process any more."""
-        for each in self.pages:
-            if hasattr(mmap, "MADV_DONTNEED"):
-                each.madvise(mmap.MADV_DONTNEED)
+        if self.pages is not None and hasattr(mmap, "MADV_DONTNEED"):
+            self.pages.madvise(mmap.MADV_DONTNEED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,17 +303,6 @@ class PoseComponents:
         sets = self.bands[number].at(iy, ix)
         sets[sets >= 0] = self.numbers[number][sets[sets >= 0]]
         return sets
-
-
-def _in_file(values: Int32Array) -> tuple[Int32Array, mmap.mmap | None]:
-    """The values in a file without a name, which is gone with the last array that shows it."""
-    if not values.size:
-        return values, None
-    with TemporaryFile() as file:
-        values.tofile(file)
-        file.flush()
-        pages = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
-    return np.frombuffer(pages, dtype=values.dtype), pages
 
 
 def _ranges(shape: tuple[int, int], rows: slice, columns: slice) -> tuple[range, range]:

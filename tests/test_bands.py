@@ -1,6 +1,7 @@
 """A floor cut into bands, in turn or by workers of which one dies: the same answer bit for bit."""
 
 import json
+import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import partial
@@ -8,11 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from shapely.geometry import box
 
 from satAOI_adapters.cluster import Workers, workers
 from satAOI_geo.bands import BandTask, Explored, Outcome
 from satAOI_geo.errors import InputError, LimitError
 from satAOI_geo.pipeline import Result, area_of_interest
+from satAOI_geo.plan import FloorPlan
 from satAOI_geo.program import main
 from satAOI_geo.route import RouteMap
 from satAOI_geo.settings import Settings
@@ -75,6 +78,22 @@ def test_routes_are_not_looked_for_in_bands() -> None:
     cut = area_of_interest(plan, settings=replace(SETTINGS, memory_gb=TINY_GB))
     with pytest.raises(LimitError, match="--memory"):
         RouteMap(cut.search)
+
+
+def test_memory_for_hardly_a_row_is_refused_with_what_would_do() -> None:
+    floor = FloorPlan(box(0, 0, 3000, 8000))
+    with pytest.raises(LimitError, match=r"into 320 bands, more than 200; give --memory") as caught:
+        area_of_interest(floor, settings=replace(SETTINGS, step_mm=25.0, memory_gb=1e-9))
+    enough_gb = float(str(caught.value).split()[-3])
+    area_of_interest(floor, settings=replace(SETTINGS, step_mm=25.0, memory_gb=enough_gb))
+
+
+def test_no_room_for_what_bands_hold_is_told_with_the_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "none"))
+    with pytest.raises(LimitError, match=r"none'.*TMPDIR"):
+        area_of_interest(plans.random_plan(81), settings=replace(SETTINGS, memory_gb=TINY_GB))
 
 
 def test_memory_without_end_is_one_band() -> None:

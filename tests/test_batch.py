@@ -29,7 +29,7 @@ output, report, _, _, plan = sys.argv[-5:]
 text = pathlib.Path(plan).read_text()
 if text == "bad":
     sys.exit("error: it is bad")
-pathlib.Path(output.partition("=")[2]).write_text(text)
+pathlib.Path(output.partition("=")[2]).write_text("sataoi-dxf/1")
 figures = {"area_m2": len(text), "percent_of_free": 50}
 source = {"sha256": __import__("hashlib").sha256(text.encode()).hexdigest()}
 told = json.dumps({"aoi": figures, "findings": [1], "input": source})
@@ -208,7 +208,9 @@ def test_a_batch_without_workers_needs_no_dask(monkeypatch: pytest.MonkeyPatch) 
 def test_a_run_ends_with_the_process_that_started_it(tmp_path: Path) -> None:
     psutil = pytest.importorskip("psutil")
     run = """
-import time
+import signal, time
+# as where a script starts it in the background
+signal.signal(signal.SIGINT, signal.SIG_IGN)
 from satAOI_adapters.lifeline import end_with_the_caller
 end_with_the_caller()
 open("begun", "w").close()
@@ -250,13 +252,22 @@ def write(name: str, text: str) -> Callable[[], object]:
     ("change", "run"),
     [
         (Path("out/a.aoi.dxf").unlink, ["a.dxf", "b.dxf"]),
+        (write("out/a.aoi.json", ""), ["a.dxf", "b.dxf"]),
         (write("c.dxf", "other"), ["b.dxf", "c.dxf"]),
         (write("b.dxf", "mended"), ["b.dxf"]),
         (write("layers.toml", "other"), ["a.dxf", "b.dxf", "c.dxf"]),
         (write("out/results.json", "torn"), ["a.dxf", "b.dxf", "c.dxf"]),
         (Path("a.dxf").unlink, ["b.dxf"]),
     ],
-    ids=["a result", "a plan", "the bad plan", "a settings file", "the results", "no plan"],
+    ids=[
+        "a result",
+        "an emptied result",
+        "a plan",
+        "the bad plan",
+        "a settings file",
+        "the results",
+        "no plan",
+    ],
 )
 @pytest.mark.usefixtures("texts")
 def test_a_plan_is_run_again_when_something_changes(
@@ -292,6 +303,37 @@ def test_results_of_the_batch_are_no_plans() -> None:
         batch.run_all(tasks, InTurn(), Path(), kept={}, told=lambda _: None)
 
 
+@pytest.mark.usefixtures("texts")
+def test_no_result_is_written_over_a_plan() -> None:
+    Path("a.aoi.dxf").write_text("a plan", encoding="utf-8")
+    Path("link").symlink_to(".")
+    for given in (["*.dxf"], ["a.dxf", "a.aoi.dxf"]):
+        for out_dir in (Path(), Path("link")):
+            with pytest.raises(InputError, match=r"'a\.aoi\.dxf' is where results would be"):
+                batch.tasks_of(batch.plans_of(given), out_dir, [], [])
+
+
+@pytest.mark.usefixtures("texts")
+def test_a_batch_goes_on_where_a_folder_that_an_option_names_holds_its_results() -> None:
+    runs = []
+    for _ in range(2):
+        tasks = batch.tasks_of(batch.plans_of(["a.dxf", "c.dxf"]), Path("out"), [], [Path()])
+        kept, here = batch.rows_kept(tasks, earlier_rows(Path("out"))), Noting()
+        batch.run_all(tasks, here, Path("out"), kept=kept, told=lambda _: None)
+        runs.append(here.done)
+    assert runs == [["a.dxf", "c.dxf"], []]
+
+
+@pytest.mark.usefixtures("texts")
+def test_a_slip_in_the_options_costs_no_results(monkeypatch: pytest.MonkeyPatch) -> None:
+    run_here()
+    before = {file: file.read_bytes() for file in Path("out").glob("?.aoi.*")}
+    assert len(before) == 4
+    monkeypatch.setattr(batch, "PROGRAM", "import sys; sys.exit(2)")
+    assert run_here("--step=0") == ["a.dxf", "b.dxf", "c.dxf"]
+    assert {file: file.read_bytes() for file in before} == before
+
+
 def test_options_are_handed_on_as_they_were_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -319,9 +361,10 @@ def test_options_are_handed_on_as_they_were_written(
         (["."], "'.' names no file"),
         (["a.dxf", "--robot", "nobody"], "nobody"),
         (["a.dxf", "--clearance", "-1"], "clearance"),
+        (["a.dxf", "--layers", "none.toml"], "none.toml"),
         (["a.dxf", "--scheduler", "x", "--workers", "2"], "leave --workers out"),
     ],
-    ids=["no match", "a folder", "no robot", "no clearance", "two crews"],
+    ids=["no match", "a folder", "no robot", "no clearance", "no layers", "two crews"],
 )
 @pytest.mark.usefixtures("texts")
 def test_what_no_run_could_use_is_refused_at_once(

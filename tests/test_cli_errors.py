@@ -1,13 +1,19 @@
 """What goes wrong on the command line: one line, and an exit code that tells whose turn it is."""
 
 import os
+import shlex
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
 
 from satAOI_geo import pipeline
+from satAOI_geo.kernels import VARIABLE
 from satAOI_geo.program import main
-from tests.command_line import drawn_room, program, the_error
+from tests.command_line import ROOT, START, drawn_room, program, the_error
 
 
 @pytest.fixture
@@ -118,6 +124,46 @@ def test_an_interrupt_has_an_exit_code_of_its_own(
     assert main([str(room), "--quiet", "-o", str(output)]) == 130
     assert "error: interrupted" in capsys.readouterr().err
     assert not output.exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows ends processes in its own way")
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_a_signal_to_end_is_one_line_and_leaves_nothing(tmp_path: Path, name: str) -> None:
+    number = getattr(signal, name)
+    hall = str(ROOT / "samples" / "hall_complex.dxf")
+    running = subprocess.Popen(
+        [sys.executable, "-c", START, f"{ROOT}|{ROOT / 'adapters'}", hall, "--step", "2"],
+        env={**os.environ, VARIABLE: "", "XDG_CACHE_HOME": "/proc", "TMPDIR": str(tmp_path)},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+    )
+    # without a folder that lasts there is one for this run, which it removes
+    while not list(tmp_path.iterdir()):
+        assert running.poll() is None
+        time.sleep(0.05)
+    running.send_signal(number)
+    _, said = running.communicate(timeout=60)
+    assert said.decode().splitlines()[-1] == f"error: ended by {name}"
+    assert running.returncode == 128 + number
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell of Unix")
+@pytest.mark.parametrize(("closed", "code"), [(">&-", 0), ("2>&-", 0)])
+def test_what_is_printed_to_may_be_closed(room: Path, closed: str, code: int) -> None:
+    asked = shlex.join([sys.executable, "-c", START, f"{ROOT}|{ROOT / 'adapters'}", str(room)])
+    done = subprocess.run(["sh", "-c", f"{asked} {closed}"], capture_output=True, check=False)
+    assert done.returncode == code
+    assert b"Traceback" not in done.stderr
+
+
+def test_an_output_is_known_by_any_of_its_names(
+    room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (room.parent / "sub").mkdir()
+    one, other = room.parent / "aoi.dxf", room.parent / "sub" / ".." / "aoi.dxf"
+    assert main([str(room), "-o", str(one), "--report", str(other)]) == 2
+    assert "asked for twice" in the_error(capsys)
 
 
 def test_an_interrupt_while_the_program_loads_is_one_line(

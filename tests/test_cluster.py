@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from satAOI_adapters.cluster import Dask, InTurn, Workers, workers
+import satAOI_geo
+from satAOI_adapters.cluster import Dask, InTurn, Workers, _refuse_unfit_workers, workers
 from satAOI_geo.errors import InputError, LimitError
 from tests import cluster_jobs as jobs
 from tests.command_line import ROOT, START, the_error
@@ -262,6 +263,18 @@ def test_a_scheduler_without_workers_is_refused(monkeypatch: pytest.MonkeyPatch)
         pass
 
 
+def test_a_worker_that_lacks_the_program_is_refused() -> None:
+    class Client:
+        def wait_for_workers(self, *_: object, **__: object) -> None: ...
+
+        def run(self, *_: object, **__: object) -> dict[str, object]:
+            # what a worker raises comes back in this form
+            return {"tcp://1": Exception("ModuleNotFoundError"), "tcp://2": satAOI_geo.__version__}
+
+    with pytest.raises(InputError, match="worker tcp://1 lacks satAOI-geo"):
+        _refuse_unfit_workers(Client(), "tcp://x")
+
+
 def test_workers_of_another_version_are_refused(
     scheduler: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -275,9 +288,11 @@ def test_workers_of_another_version_are_refused(
 
 def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("satAOI_adapters.cluster.CONNECT_S", 1)
-    for address in ("tcp://127.0.0.1:1", "nonsense://x"):
-        with (
-            pytest.raises(InputError, match="no Dask scheduler answers"),
-            workers(scheduler=address),
-        ):
-            pass
+    with socket.create_server(("127.0.0.1", 0)) as mute:
+        listening = f"tcp://127.0.0.1:{mute.getsockname()[1]}"
+        for address in ("tcp://127.0.0.1:1", "nonsense://x", "tls://127.0.0.1:1", listening):
+            with (
+                pytest.raises(InputError, match="no Dask scheduler answers"),
+                workers(scheduler=address),
+            ):
+                pass

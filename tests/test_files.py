@@ -54,6 +54,19 @@ def test_a_full_disk_is_an_input_error_with_its_reason(tmp_path: Path) -> None:
     assert names_in(tmp_path) == []
 
 
+def test_the_error_told_is_that_of_writing_not_of_tidying_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError(30, "Read-only file system")
+
+    for action in ("open", "unlink"):
+        monkeypatch.setattr(Path, action, refuse)
+    with pytest.raises(InputError, match=r"cannot write '.*x\.dxf': Read-only file system"):  # noqa: SIM117
+        with written_whole(tmp_path / "x.dxf"):
+            pass
+
+
 def test_an_input_is_never_written_over_under_any_of_its_names(tmp_path: Path) -> None:
     read = tmp_path / "plan.dxf"
     read.write_bytes(b"plan")

@@ -14,14 +14,14 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 import satAOI_geo
 from satAOI_adapters import lifeline
-from satAOI_adapters.batch_results import Row, printable, save
+from satAOI_adapters.batch_results import SUMMARIES, Row, printable, save
 from satAOI_adapters.cluster import Outcome, Workers
 from satAOI_geo.errors import InputError, LimitError
 
@@ -35,7 +35,11 @@ sys.exit(main())
 
 DONE: Final = 0
 FAILED: Final = 1
+USAGE: Final = 2
 LIMIT_REACHED: Final = 5
+
+RESULTS: Final = (".dxf", ".json")
+"""What the names of a run's drawing and of its report end in."""
 
 SIGNALLED: Final = 128
 """A process that signal N has ended has the exit code 128 + N, as in shells."""
@@ -81,6 +85,10 @@ class Task:
     folder: str
     sha256: str
     asked: str
+
+    def results(self) -> tuple[str, str]:
+        """The files that a run writes."""
+        return self.output, self.report
 
 
 def plans_of(patterns: Sequence[str]) -> list[Plan]:
@@ -134,17 +142,27 @@ def tasks_of(
 ) -> list[Task]:
     """What there is to run.
 
-    A plan that is a drawing which this batch writes is left out: a pattern may find them.
+    A drawing that an earlier batch wrote is left out: a pattern may find it.
 
     Args:
         plans: The plans.
         out_dir: Where the results go.
         options: Of `satAOI-geo run`.
         named: Files and folders that the options name.
+
+    Raises:
+        InputError: If results would be written over a plan.
     """
     names = names_in(out_dir, plans)
-    written = {_absolute(f"{name}.aoi.dxf") for name in names}
-    asked = hashlib.sha256(json.dumps([list(options), *map(_state_of, named)]).encode()).hexdigest()
+    written = {Path(f"{name}.aoi{suffix}").resolve() for name in names for suffix in RESULTS}
+    written |= {(out_dir / name).resolve() for name in SUMMARIES}
+    for plan in plans:
+        if plan.file.resolve() in written and not _is_result(plan.file):
+            raise InputError(
+                f"'{plan.given}' is where results would be written; give another --out-dir"
+            )
+    of_named = [_state_of(each, besides=written) for each in named]
+    asked = hashlib.sha256(json.dumps([list(options), *of_named]).encode()).hexdigest()
     return [
         Task(
             plan=plan.given,
@@ -156,7 +174,7 @@ def tasks_of(
             asked=asked,
         )
         for plan, name in zip(plans, names, strict=True)
-        if plan.file not in written
+        if plan.file.resolve() not in written
     ]
 
 
@@ -182,7 +200,7 @@ def _is_done(task: Task, row: Row) -> bool:
         task.asked,
         satAOI_geo.__version__,
     )
-    return same and row.exit_code == DONE and all(map(os.path.isfile, (task.output, task.report)))
+    return same and row.exit_code == DONE and all(map(_holds_something, task.results()))
 
 
 def run_all(
@@ -230,10 +248,6 @@ def row_of(task: Task, outcome: Outcome[Row]) -> Row:
 
 def run_plan(task: Task) -> Row:
     """Run the program on one plan; this is what workers do."""
-    for old in (task.output, task.report):
-        # what cannot be removed cannot be written either, and the run says why
-        with contextlib.suppress(OSError):
-            Path(task.folder, old).unlink()
     files = [f"--output={task.output}", f"--report={task.report}", "--quiet", "--", task.plan]
     begin_s = time.perf_counter()
     with lifeline.tied() as stdin:
@@ -247,6 +261,11 @@ def run_plan(task: Task) -> Row:
             check=False,
         )
     time_s = time.perf_counter() - begin_s
+    if done.returncode not in {DONE, USAGE}:
+        # those of an earlier run with other options are no answer; a slip in these costs nothing
+        for old in task.results():
+            with contextlib.suppress(OSError):
+                Path(task.folder, old).unlink()
     if done.returncode != DONE:
         return failed(task, *_how_it_ended(done.returncode, done.stderr), time_s=time_s)
     report = json.loads(Path(task.folder, task.report).read_bytes())
@@ -312,7 +331,22 @@ def _digest_of(file: Path) -> str:
         return ""
 
 
-def _state_of(named: Path) -> list[str]:
-    """What a file or all files of a folder hold, in a form that changes with it."""
-    files = sorted(named.rglob("*")) if named.is_dir() else [named]
-    return [f"{file} {_digest_of(file)}" for file in files]
+def _state_of(named: Path, *, besides: Container[Path]) -> list[str]:
+    """What a file or all files of a folder but some hold, in a form that changes with it."""
+    files = sorted(filter(Path.is_file, named.rglob("*"))) if named.is_dir() else [named]
+    return [f"{file} {_digest_of(file)}" for file in files if file.resolve() not in besides]
+
+
+def _is_result(file: Path) -> bool:
+    """Whether a drawing was written by this program."""
+    from satAOI_adapters.dxf_write.metadata import SCHEMA
+
+    try:
+        return SCHEMA.encode() in file.read_bytes()
+    except OSError:
+        return False
+
+
+def _holds_something(file: str) -> bool:
+    """Whether there is such a file, and something in it."""
+    return Path(file).is_file() and Path(file).stat().st_size > 0

@@ -12,6 +12,7 @@ from satAOI_adapters.files import written_whole
 
 JSON_NAME: Final = "results.json"
 CSV_NAME: Final = "results.csv"
+SUMMARIES: Final = (JSON_NAME, CSV_NAME)
 
 
 def printable(name: str) -> str:

@@ -286,9 +286,12 @@ def _connected(scheduler: str) -> Iterator["Client"]:
     """
     from distributed import Client
 
+    # what is lost is told once, by the program
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
     try:
+        asyncio.run(_refuse_what_does_not_answer(scheduler))
         client = Client(scheduler, timeout=CONNECT_S)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, TypeError, ImportError) as error:
         raise InputError(
             f"no Dask scheduler answers at '{scheduler}'; give its address, for example "
             "tcp://192.168.1.20:8786"
@@ -298,25 +301,42 @@ def _connected(scheduler: str) -> Iterator["Client"]:
         yield client
 
 
+async def _refuse_what_does_not_answer(scheduler: str) -> None:
+    """Shake hands once: a client would wait for ever for those of a server that is no scheduler.
+
+    Raises:
+        TimeoutError: If nothing answers as one.
+    """
+    from distributed import Security
+    from distributed.comm import connect
+
+    own = Security().get_connection_args("client")
+    async with asyncio.timeout(CONNECT_S):
+        comm = await connect(scheduler, timeout=CONNECT_S, **own)
+        await comm.close()
+
+
 def _refuse_unfit_workers(client: "Client", scheduler: str) -> None:
     """Refuse workers that would give another answer, or none.
 
     Raises:
-        InputError: If there is no worker, or one that lacks this version of the program.
+        InputError: If there is no worker, or one that lacks this version of the program, or the
+            scheduler is lost.
     """
     try:
         # one that died of the last task may be on its way back
         client.wait_for_workers(1, timeout=CONNECT_S)
-        versions = client.run(_version)
+        # what goes wrong there is returned
+        versions = client.run(_version, on_error="return")
     except TimeoutError as error:
         raise InputError(
             f"the scheduler at '{scheduler}' has no workers; start some: dask worker {scheduler}"
         ) from error
-    except ImportError as error:
-        raise InputError(
-            f"a worker of '{scheduler}' lacks satAOI-geo; install satAOI-geo[cluster] there"
-        ) from error
+    except (OSError, CancelledError) as error:
+        raise InputError(f"the scheduler at '{scheduler}' is lost; start it again") from error
     for worker, version in versions.items():
+        if not isinstance(version, str):
+            raise InputError(f"worker {worker} lacks satAOI-geo; install satAOI-geo[cluster] there")
         if version != satAOI_geo.__version__:
             raise InputError(
                 f"worker {worker} runs satAOI-geo {version}, this is {satAOI_geo.__version__}; "

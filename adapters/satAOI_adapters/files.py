@@ -44,8 +44,9 @@ def written_whole(path: Path, *, never_over: Iterable[Path] = ()) -> Iterator[Bi
     except OSError as error:
         raise InputError(f"cannot write '{path}': {error.strerror or error}") from error
     finally:
-        # gone already when all went well
-        temporary.unlink(missing_ok=True)
+        # gone already when all went well; and what went wrong is the error to tell
+        with contextlib.suppress(OSError):
+            temporary.unlink()
 
 
 def refuse_unfit_target(path: Path, never_over: Iterable[Path] = ()) -> None:

@@ -1,4 +1,7 @@
-"""A process that ends with the one that started it, whatever became of that."""
+"""A process that ends with the one that started it, whatever became of that.
+
+A run of a batch loads this before all else, so it loads little itself.
+"""
 
 import contextlib
 import os
@@ -32,4 +35,6 @@ def end_with_the_caller() -> None:
     if sys.platform != "win32":
         # workers are deaf to interrupts, and so is what they start
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    # a shell that starts something in the background has it ignore interrupts
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     threading.Thread(target=wait, daemon=True).start()

@@ -1,5 +1,6 @@
 """What a person sees: errors, notes and progress on standard error, tables on standard output."""
 
+import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -18,8 +19,12 @@ TOLD_OF_A_SORT = 3
 def accept_any_text() -> None:
     """Let no character of a layer or file name stop a line from being printed.
 
-    A name may hold characters the terminal's encoding lacks, or bytes that are no text at all.
+    A name may hold characters the terminal's encoding lacks, or bytes that are no text at all. And
+    whoever starts the program may have closed what it prints to.
     """
+    # both are open as long as the program runs
+    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115  loads less
+    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115  the same
     for stream in (sys.stdout, sys.stderr):
         # a stream replaced by a caller need not be a text file
         reconfigure = getattr(stream, "reconfigure", None)
