@@ -286,8 +286,9 @@ def _connected(scheduler: str) -> Iterator["Client"]:
     """
     from distributed import Client
 
-    # what is lost is told once, by the program
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    # what is lost is told once, by the program; Dask gives its parts levels of their own
+    for name in ("distributed", "distributed.client", "distributed.core"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         asyncio.run(_refuse_what_does_not_answer(scheduler))
         client = Client(scheduler, timeout=CONNECT_S)
