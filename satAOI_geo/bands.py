@@ -173,7 +173,8 @@ def _cuts(lattice: Lattice, memory_gb: float, n_bands: int) -> Iterator[tuple[sl
         raise LimitError(
             f"a memory of {memory_gb:g} GB would cut this floor into "
             f"{-(-lattice.n_rows // n_own)} bands, more than {MOST_BANDS}; give --memory "
-            f"{math.ceil(least_gb * 1e4) / 1e4:g} or more",
+            f"{math.ceil(least_gb * 1e4) / 1e4:g} or more, or a coarser --step or fewer "
+            "--directions",
             limit="bands",
             value=-(-lattice.n_rows // n_own),
             allowed=MOST_BANDS,

@@ -89,8 +89,19 @@ class DefaultRun(click.RichGroup):
         if not args:
             args = ["--help"]
         elif args[0] not in own_words:
+            self._refuse_mistyped(args[0])
             args = ["run", *args]
         return super().parse_args(ctx, args)
+
+    def _refuse_mistyped(self, word: str) -> None:
+        """Refuse a word that is nearly a command, and no file."""
+        from difflib import get_close_matches
+
+        meant = get_close_matches(word, self.commands, n=1)
+        if meant and not Path(word).exists():
+            raise click.UsageError(
+                f"there is neither a command nor a plan '{word}'; did you mean '{meant[0]}'?"
+            )
 
 
 @click.group(

@@ -28,15 +28,22 @@ def refuse_early(plan: Path, outputs: Outputs, read: list[Path | None]) -> None:
     """Refuse outputs that could not be written, before any work is done for them.
 
     Raises:
-        InputError: If one has a suffix that no writer knows or that does not go with the plan's,
-            is an input, is asked for twice, or cannot be a file at all.
+        InputError: If one has a suffix that no writer knows or that does not go with the plan's or
+            the option, is an input, is asked for twice, or cannot be a file at all.
     """
-    from satAOI_adapters import writer_of
+    from satAOI_adapters import RASTERS, WRITERS, writer_of
 
     for path in areas_of(outputs):
         writer_of(path)
         if path.suffix.lower() in ONLY_FROM_IFC and plan.suffix.lower() != IFC:
             raise InputError(f"'{path}' adds to an IFC model, and '{plan}' is none; write a DXF")
+    raster, report = outputs["raster"], outputs["report"]
+    if raster is not None and raster.suffix.lower() not in RASTERS:
+        raise InputError(
+            f"'{raster}' is to be a raster; give a name that ends in {' or '.join(RASTERS)}"
+        )
+    if report is not None and report.suffix.lower() in WRITERS:
+        raise InputError(f"'{report}' is to hold the figures; give a name that ends in .json")
     refuse_targets(files_of(outputs), read)
 
 

@@ -105,10 +105,15 @@ class Pen:
         )
 
     def storey(
-        self, name: str = "Level", z_mm: float = 0.0, *, elevation_mm: float | None = None
+        self,
+        name: str = "Level",
+        z_mm: float = 0.0,
+        *,
+        elevation_mm: float | None = None,
+        within: entity_instance | None = None,
     ) -> entity_instance:
         """A storey placed at a height."""
-        placement = self.placement((0.0, 0.0, z_mm))
+        placement = self.placement((0.0, 0.0, z_mm), within=within)
         elevation = None if elevation_mm is None else self.length(elevation_mm)
         return self.root(
             "IfcBuildingStorey", Name=name, ObjectPlacement=placement, Elevation=elevation

@@ -84,7 +84,7 @@ def test_memory_for_hardly_a_row_is_refused_with_what_would_do() -> None:
     floor = FloorPlan(box(0, 0, 3000, 8000))
     with pytest.raises(LimitError, match=r"into 320 bands, more than 200; give --memory") as caught:
         area_of_interest(floor, settings=replace(SETTINGS, step_mm=25.0, memory_gb=1e-9))
-    enough_gb = float(str(caught.value).split()[-3])
+    enough_gb = float(str(caught.value).split("--memory ")[1].split()[0])
     area_of_interest(floor, settings=replace(SETTINGS, step_mm=25.0, memory_gb=enough_gb))
 
 

@@ -215,3 +215,15 @@ def test_the_demo_needs_no_file(
     assert main(["demo", "-o", "demo.dxf"]) == 0
     assert "m² (layer)" in capsys.readouterr().err
     assert [file.name for file in tmp_path.iterdir()] == ["demo.dxf"]
+
+
+def test_a_mistyped_command_is_told_as_one(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["runn", "plan.dxf"]) == 2
+    assert "did you mean 'run'?" in the_error(capsys)
+    # a plan may have such a name
+    Path("runn").touch()
+    assert main(["runn"]) == 2
+    assert "must end in" in the_error(capsys)

@@ -54,8 +54,11 @@ def room(tmp_path: Path) -> Path:
         (["-o", "aoi.dxf", "-o", "aoi.dxf"], 2, "asked for twice"),
         (["-o", "nowhere/aoi.dxf"], 2, "no folder 'nowhere'"),
         (["-o", "room.dxf"], 2, "is an input"),
-        (["--report", "room.dxf"], 2, "is an input"),
-        (["-o", "aoi.dxf", "--report", "aoi.dxf"], 2, "asked for twice"),
+        (["--report", "room.dxf"], 2, "give a name that ends in .json"),
+        (["--raster", "aoi.dxf"], 2, "give a name that ends in .png or .npz"),
+        (["-o", "aoi.png", "--raster", "aoi.png"], 2, "asked for twice"),
+        (["--region", "90000,90000,91000,91000"], 2, "nothing of the drawing lies in the region"),
+        (["--close-gaps", "nan"], 2, "give 0 to 500"),
         (["--start", "2800,2800"], 4, "on layer 'COLUMN' is in the way"),
         (["--start", "90000,90000"], 4, "outside"),
         (["--clearance", "5000"], 4, "nowhere"),
@@ -162,7 +165,7 @@ def test_an_output_is_known_by_any_of_its_names(
 ) -> None:
     (room.parent / "sub").mkdir()
     one, other = room.parent / "aoi.dxf", room.parent / "sub" / ".." / "aoi.dxf"
-    assert main([str(room), "-o", str(one), "--report", str(other)]) == 2
+    assert main([str(room), "-o", str(one), "-o", str(other)]) == 2
     assert "asked for twice" in the_error(capsys)
 
 

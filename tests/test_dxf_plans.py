@@ -39,6 +39,14 @@ def test_likeliest_plan_is_read_and_the_choice_is_said(tmp_path: Path) -> None:
     assert standing(plan, "XYZ") == []
 
 
+def test_plans_far_from_the_origin_are_told_with_all_their_digits(tmp_path: Path) -> None:
+    document = sheet()
+    for entity in document.modelspace():
+        entity.translate(3_456_789_000, 5_432_109_000, 0)
+    (said,) = [f.message for f in plan_of(document, tmp_path).findings if f.code == "several-plans"]
+    assert "from (3456789000, 5432109000) to (3456797000, 5432115000)" in said
+
+
 def test_what_is_left_out_is_told_by_its_kind(tmp_path: Path) -> None:
     (said,) = [f.message for f in plan_of(sheet(), tmp_path).findings if f.code == "left-out"]
     # the section's two outlines, and the frame

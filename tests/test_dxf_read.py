@@ -23,8 +23,16 @@ from satAOI_adapters.dxf_read.curves import (
 from satAOI_adapters.dxf_read.curves import (
     Path as Outline,
 )
+from satAOI_adapters.dxf_read.options import ReadOptions
 from satAOI_adapters.dxf_read.shapes import circle_of, room, solid, traces
-from satAOI_geo.errors import DrawingError, EmptyPlanError, LimitError, UnitError, UnreadableError
+from satAOI_geo.errors import (
+    DrawingError,
+    EmptyPlanError,
+    InputError,
+    LimitError,
+    UnitError,
+    UnreadableError,
+)
 from satAOI_geo.plan import Circle, Kind
 from tests.drawings import CM, INCH, M, codes, drawing, plan_of, rectangle, standing
 
@@ -406,6 +414,69 @@ def test_start_is_taken_from_its_layer(tmp_path: Path) -> None:
     document = drawing()
     document.modelspace().add_point((2500, 4000), dxfattribs={"layer": "SATAOI-START"})
     assert plan_of(document, tmp_path).start_mm == (2500.0, 4000.0)
+
+
+def test_start_is_found_in_a_block_that_holds_the_whole_plan(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    block = document.blocks.new("PLAN")
+    rectangle(block, 0, 0, 10_000, 10_000, layer="FLOOR")
+    block.add_point((2500, 4000), dxfattribs={"layer": "SATAOI-START"})
+    document.modelspace().add_blockref("PLAN", (100, 0), {"xscale": -1, "yscale": 1})
+    plan = plan_of(document, tmp_path)
+    assert plan.frame.to_drawing(plan.start_mm).tolist() == [100 - 2500, 4000]
+    assert not {"start-unread", "start-ambiguous"} & set(codes(plan))
+
+
+def test_start_is_found_in_the_layout_that_is_read(tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    layout = document.layout("Layout1")
+    rectangle(layout, 0, 0, 10_000, 10_000, layer="FLOOR")
+    layout.add_point((2500, 4000), dxfattribs={"layer": "SATAOI-START"})
+    plan = plan_of(document, tmp_path)
+    assert plan.start_mm == (2500.0, 4000.0)
+
+
+def test_start_marked_by_a_block_is_where_the_block_is_put(tmp_path: Path) -> None:
+    document = drawing()
+    document.blocks.new("MARK").add_circle((300, 0), 50)
+    document.modelspace().add_blockref("MARK", (2500, 4000), {"layer": "SATAOI-START"})
+    plan = plan_of(document, tmp_path)
+    assert plan.start_mm == (2500.0, 4000.0)
+    assert "start-ambiguous" not in codes(plan)
+
+
+def test_what_is_no_mark_of_the_start_is_said(tmp_path: Path) -> None:
+    document = drawing()
+    for x in (2500, 2600):
+        document.modelspace().add_line((x, 4000), (x + 50, 4000), {"layer": "SATAOI-START"})
+    plan = plan_of(document, tmp_path)
+    assert plan.start_mm is None
+    (said,) = [finding for finding in plan.findings if finding.code == "start-unread"]
+    assert said.message.startswith("2 entities on layer SATAOI-START are no mark")
+
+
+@pytest.mark.parametrize("options", [{}, {"include_hidden": True}])
+def test_what_is_invisible_itself_is_left_out_and_said(
+    options: dict[str, bool], tmp_path: Path
+) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 1000, 1000, 2000, 2000, layer="COLUMN")
+    document.modelspace()[-1].dxf.invisible = 1
+    plan = plan_of(document, tmp_path, **options)
+    assert plan.obstacles == ()
+    (said,) = [finding for finding in plan.findings if finding.code == "entity-invisible"]
+    assert said.remedy.startswith("make them visible in the drawing")
+
+
+@pytest.mark.parametrize("close_gaps_mm", [-1.0, 501.0, math.nan])
+def test_gaps_that_are_none_are_refused(close_gaps_mm: float) -> None:
+    with pytest.raises(InputError, match="give 0 to 500"):
+        ReadOptions(close_gaps_mm=close_gaps_mm)
+
+
+def test_a_region_beside_the_drawing_is_refused_with_its_extent(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"drawn from \(0, 0\) to \(10000, 10000\)"):
+        plan_of(drawing(), tmp_path, region=(20e3, 20e3, 25e3, 26e3))
 
 
 def test_own_output_layers_are_not_read(tmp_path: Path) -> None:

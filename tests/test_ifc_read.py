@@ -574,6 +574,40 @@ def test_elevations_are_used_where_no_storey_is_placed(tmp_path: Path, pen: Pen)
     assert codes(plan)[0] == "storey-elevation"
 
 
+def test_elevations_count_from_the_building(tmp_path: Path, pen: Pen) -> None:
+    building = pen.placement((0.0, 0.0, 300e3))
+    first = pen.storey("First", 3e3, elevation_mm=3e3, within=building)
+    ground = pen.storey("Ground", elevation_mm=0.0, within=building)
+    pen.contain(first, pen.slab(5e3, 4e3, top_mm=303e3))
+    pen.contain(ground, pen.slab(6e3, 4e3, top_mm=300e3))
+    plan = plan_in(pen.save(tmp_path), storey="First")
+    assert plan.floor.area == 20e6
+    assert "storey-elevation" not in codes(plan)
+
+
+def test_elevations_are_used_at_the_buildings_height(tmp_path: Path, pen: Pen) -> None:
+    building = pen.placement((0.0, 0.0, 300e3))
+    first = pen.storey("First", elevation_mm=3e3, within=building)
+    ground = pen.storey("Ground", elevation_mm=0.0, within=building)
+    pen.contain(first, pen.slab(5e3, 4e3, top_mm=303e3))
+    pen.contain(ground, pen.slab(6e3, 4e3, top_mm=300e3))
+    plan = plan_in(pen.save(tmp_path), storey="First")
+    assert plan.floor.area == 20e6
+    assert codes(plan).count("storey-elevation") == 1
+
+
+@pytest.mark.parametrize("band_mm", [-1.0, 0.0, math.nan, math.inf])
+def test_a_band_without_height_is_refused(band_mm: float) -> None:
+    with pytest.raises(errors.InputError, match="give a height above 0"):
+        IfcOptions(band_mm=band_mm)
+
+
+@pytest.mark.parametrize("floor_z", [math.nan, -math.inf])
+def test_a_floor_at_no_height_is_refused(floor_z: float) -> None:
+    with pytest.raises(errors.InputError, match="give a number"):
+        IfcOptions(floor_z=floor_z)
+
+
 def test_the_floor_lies_where_the_slabs_top_is(tmp_path: Path, pen: Pen) -> None:
     # a slab that was drawn on top of its storey: it is the floor, not an obstacle
     post = pen.product("IfcColumn", pen.box((1000.0, 1000.0, 200.0), (1300.0, 1300.0, 400.0)))

@@ -1,6 +1,8 @@
 """Every patch of free floor that is left over has one reason, and none is lost."""
 
 import itertools
+from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -189,6 +191,25 @@ def test_far_room_behind_a_gap_too_narrow_for_the_disc_is_another_zone() -> None
     result = area_of_interest(case.plan, settings=SETTINGS, start=StartMark(case.start_mm))
     far_mm = (case.plan.floor.bounds[2] - 1000.0, 2000.0)
     assert at(result, *far_mm).reason is Reason.ZONE
+
+
+@pytest.mark.parametrize("connectivity", ["disc", "pose"])
+def test_the_middle_of_a_cell_is_explained_as_the_raster_has_it(
+    connectivity: Literal["disc", "pose"],
+) -> None:
+    # walls on whole steps: the disc touches the middles of cells along them
+    case = plans.two_rooms(760.0)
+    settings = replace(SETTINGS, step_mm=10.0, n_directions=8, connectivity=connectivity)
+    result = area_of_interest(case.plan, settings=settings, start=StartMark(case.start_mm))
+    cells, lattice = result.aoi.cells.as_array(), result.lattice
+    around = np.pad(cells, 1)
+    neighbours = [np.roll(around, by, axis)[1:-1, 1:-1] for axis in (0, 1) for by in (-1, 1)]
+    edge = np.argwhere(np.any([each != cells for each in neighbours], axis=0))
+    blocked = shapely.union_all([one.region() for one in result.plan.obstacles])
+    for iy, ix in edge[:: len(edge) // 150].tolist():
+        at_mm = lattice.x_mm(ix), lattice.y_mm(iy)
+        if not blocked.intersects(Point(at_mm)):
+            assert explain(result, at_mm).startswith("The disc trowels") == cells[iy, ix]
 
 
 def test_a_point_is_explained_by_what_holds_it() -> None:

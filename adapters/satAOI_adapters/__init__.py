@@ -41,6 +41,7 @@ __all__ = [
     "INSPECTORS",
     "LAYERS_WRITERS",
     "PICTURE_WRITERS",
+    "RASTERS",
     "READERS",
     "ROUTE_WRITERS",
     "WRITERS",
@@ -282,12 +283,14 @@ READERS: Final[dict[str, Reader]] = {".dxf": _read_dxf, ".ifc": _read_ifc}
 INSPECTORS: Final[dict[str, Inspector]] = {".dxf": _inspect_dxf, ".ifc": _inspect_ifc}
 """Suffix, in lower case, to the function that tells how such a file is read."""
 
+RASTERS: Final[dict[str, Writer]] = {".png": _write_png, ".npz": _write_npz}
+"""Suffix, in lower case, to the function that writes the area as a raster to such a file."""
+
 WRITERS: Final[dict[str, Writer]] = {
     ".dxf": _write_dxf,
     ".ifc": _write_ifc,
     ".bcf": _write_bcf,
-    ".png": _write_png,
-    ".npz": _write_npz,
+    **RASTERS,
 }
 """Suffix, in lower case, to the function that writes such a file."""
 

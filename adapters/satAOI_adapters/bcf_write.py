@@ -20,6 +20,7 @@ import numpy as np
 from shapely.geometry import Polygon
 
 from satAOI_adapters.files import refuse_unfit_target, written_whole
+from satAOI_adapters.wording import coordinate
 from satAOI_geo.errors import InputError, UnreadableError
 from satAOI_geo.pipeline import Result
 from satAOI_geo.plan import FloatArray, polygons_in
@@ -151,10 +152,11 @@ def _topic(result: Result, patch: Patch, guid: str, number: int, date: str) -> E
 
 
 def _description(result: Result, patch: Patch) -> str:
-    x, y = result.plan.frame.to_drawing(patch.label_mm)
+    frame = result.plan.frame
+    x, y = (coordinate(v, frame.mm_per_unit) for v in frame.to_drawing(patch.label_mm).tolist())
     sentence = (
         f"The robot '{result.robot.name}' does not trowel {patch.area_mm2 / MM2_PER_M2:.2f} m² "
-        f"around ({x:.6g}, {y:.6g}): {SENTENCES[patch.reason]}."
+        f"around ({x}, {y}): {SENTENCES[patch.reason]}."
     )
     if patch.blocker is None:
         return sentence

@@ -84,6 +84,7 @@ class Expansion:
     Attributes:
         placed: Visible entities in drawing order.
         hidden: Entities not read because of a layer that is frozen or off, by layer.
+        invisible: Entities not read since they are invisible themselves, by layer.
         missing: External references that could not be followed.
         findings: What could not be resolved, or was replaced.
         fault: Why no plan can come of it: the first reference that lies nowhere.
@@ -91,6 +92,7 @@ class Expansion:
 
     placed: tuple[Placed, ...]
     hidden: Counter[str]
+    invisible: Counter[str]
     missing: tuple[Missing, ...]
     findings: tuple[Finding, ...]
     fault: DrawingError | None
@@ -105,6 +107,7 @@ class _Walk:
     include_hidden: bool
     placed: list[Placed] = field(default_factory=list)
     hidden: Counter[str] = field(default_factory=Counter)
+    invisible: Counter[str] = field(default_factory=Counter)
     pictured: Counter[str] = field(default_factory=Counter)
     missing: list[Missing] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
@@ -146,7 +149,7 @@ def expand(document: Drawing, *, xrefs: Xrefs, include_hidden: bool) -> Expansio
         DrawingError: If a block contains itself.
         LimitError: If there would be too many entities, copies or levels.
     """
-    space, findings = _space(document)
+    space, findings = space_of(document)
     _hold_count(document, space)
     walk = _Walk(document, xrefs, include_hidden, findings=findings)
     stack = [_Level(iter(space), Matrix44(), BY_PARENT, (), "", document)]
@@ -162,13 +165,14 @@ def expand(document: Drawing, *, xrefs: Xrefs, include_hidden: bool) -> Expansio
     return Expansion(
         tuple(walk.placed),
         walk.hidden,
+        walk.invisible,
         tuple(walk.missing),
         (*walk.findings, *_pictured(walk.pictured)),
         walk.fault,
     )
 
 
-def _space(document: Drawing) -> tuple[BaseLayout, list[Finding]]:
+def space_of(document: Drawing) -> tuple[BaseLayout, list[Finding]]:
     """Model space; the fullest layout where model space is empty."""
     model = document.modelspace()
     layouts = [layout for layout in document.layouts if not layout.is_modelspace]
@@ -193,7 +197,9 @@ def _visit(walk: _Walk, level: _Level, entity: DXFEntity) -> Iterable[_Level]:
     own = _layer(entity)
     layer = level.layer if own == BY_PARENT else level.prefix + own
     handle = level.handle or str(entity.dxf.get("handle") or "")
-    if _is_invisible(entity) or walk.is_frozen(layer):
+    if _is_invisible(entity):
+        walk.invisible[layer] += 1
+    elif walk.is_frozen(layer):
         walk.hidden[layer] += 1
     elif isinstance(entity, Insert):
         # a reference on a layer that is off hides only what takes that layer from it

@@ -4,8 +4,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from satAOI_geo.errors import InputError
+
 CLOSE_GAPS_MM: Final = 1.0
 """Line ends this close are meant to meet: no drawing is coarser, no opening finer."""
+
+WIDEST_GAP_MM: Final = 500.0
+"""Hardly a door is as narrow."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,6 +28,9 @@ class ReadOptions:
         region: Left, bottom, right, top of the part to read, in drawing units.
         start: The start, in drawing units; of several plans the one that holds it is read.
         close_gaps_mm: Line ends this far apart are joined when walls and outlines are closed.
+
+    Raises:
+        InputError: If the gaps are negative, or as wide as openings.
     """
 
     units: str | None = None
@@ -34,3 +42,10 @@ class ReadOptions:
     region: tuple[float, float, float, float] | None = None
     start: tuple[float, float] | None = None
     close_gaps_mm: float = CLOSE_GAPS_MM
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.close_gaps_mm <= WIDEST_GAP_MM:
+            raise InputError(
+                f"gaps of {self.close_gaps_mm:g} mm are to be closed; give 0 to {WIDEST_GAP_MM:g}, "
+                "wider ones are openings"
+            )

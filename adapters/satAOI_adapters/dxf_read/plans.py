@@ -22,6 +22,7 @@ from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.groups import linked
 from satAOI_adapters.dxf_read.shapes import GeometryArray, is_thin
 from satAOI_adapters.layers import KINDS, Meaning
+from satAOI_adapters.wording import coordinate
 from satAOI_geo.errors import InputError
 from satAOI_geo.plan import Finding, Frame, polygons_in
 
@@ -155,8 +156,9 @@ def _listed(found: Sequence[Cluster], frame: Frame) -> str:
     """The plans with their corners in drawing units."""
     parts = []
     for number, cluster in enumerate(found, start=1):
-        (left, bottom), (right, top) = frame.to_drawing(np.reshape(cluster.bounds_mm, (2, 2)))
-        parts.append(f"{number} from ({left:.6g}, {bottom:.6g}) to ({right:.6g}, {top:.6g})")
+        corners = frame.to_drawing(np.reshape(cluster.bounds_mm, (2, 2))).ravel().tolist()
+        left, bottom, right, top = (coordinate(value, frame.mm_per_unit) for value in corners)
+        parts.append(f"{number} from ({left}, {bottom}) to ({right}, {top})")
     return ", ".join(parts)
 
 

@@ -7,10 +7,6 @@ from typing import Final
 
 import numpy as np
 import shapely
-from ezdxf.entities import Circle as CircleEntity
-from ezdxf.entities import DXFEntity, DXFGraphic, Insert
-from ezdxf.entities import Point as PointEntity
-from ezdxf.math import Vec3
 from shapely.geometry import LineString, box
 
 from satAOI_adapters.collector import collector_at_rest
@@ -33,9 +29,10 @@ from satAOI_adapters.dxf_read.nameless import with_nameless_walls
 from satAOI_adapters.dxf_read.obstacles import Standing, solids, walls
 from satAOI_adapters.dxf_read.openings import Still, shut, with_openings
 from satAOI_adapters.dxf_read.options import ReadOptions
-from satAOI_adapters.dxf_read.placement import rounded_spot
 from satAOI_adapters.dxf_read.plans import Drawn, chosen, clusters, rough_lines, within
 from satAOI_adapters.dxf_read.shapes import middle_line
+from satAOI_adapters.dxf_read.start_marks import start_of
+from satAOI_adapters.dxf_read.strays import Box
 from satAOI_adapters.dxf_read.survey import Survey, survey
 from satAOI_adapters.dxf_read.swings import parted, swings
 from satAOI_adapters.dxf_read.terms import Terms
@@ -54,9 +51,6 @@ from satAOI_geo.plan import (
     Obstacle,
     Region,
 )
-
-START_LAYER: Final = "SATAOI-START"
-"""A POINT, CIRCLE or INSERT on this layer marks the disc's centre at the start."""
 
 SOLID_KINDS: Final = (Kind.COLUMN, Kind.HOLE, Kind.EMBEDDED, Kind.EQUIPMENT)
 """Kinds whose closed outlines are solid however wide they are."""
@@ -82,8 +76,9 @@ def plan_of(drawing: Survey, options: ReadOptions) -> FloorPlan:
     """The floor plan in a drawing that has been surveyed; errors as for `read`."""
     if drawing.fault is not None:
         raise drawing.fault
+    _refuse_nowhere(options.region, drawing.box)
     frame = drawing.frame()
-    start_mm, start_findings = _start(drawing, frame, options)
+    start_mm, start_findings = start_of(drawing, frame, options)
     everything = drawing.drawn(frame, (*KINDS, Meaning.FLOOR, Meaning.DOOR, None))
     chosen_part, choice = _chosen(everything, options, start_mm, frame)
     hold_size(drawing.unit, _size_mm(chosen_part, options, frame), drawing.path.name)
@@ -162,6 +157,21 @@ def _region_mm(options: ReadOptions, frame: Frame) -> tuple[float, float, float,
     if not (left < right and bottom < top):
         raise InputError("the region has no area; give left,bottom,right,top in drawing units")
     return float(left), float(bottom), float(right), float(top)
+
+
+def _refuse_nowhere(region: Box | None, drawn: Box | None) -> None:
+    """Refuse a region with nothing of the drawing in it, both in drawing units.
+
+    Raises:
+        InputError: If that is so.
+    """
+    if region is None or drawn is None or box(*region).intersects(box(*drawn)):
+        return
+    left, bottom, right, top = (f"{value:.12g}" for value in drawn)
+    raise InputError(
+        f"nothing of the drawing lies in the region: it is drawn from ({left}, {bottom}) to "
+        f"({right}, {top}) in drawing units; give another --region"
+    )
 
 
 def _left_out(counts: Counter[Meaning | None], what: str) -> tuple[Finding, ...]:
@@ -276,43 +286,3 @@ def _on(floor: Region, obstacles: Sequence[Obstacle]) -> tuple[Obstacle, ...]:
     shapely.prepare(floor)
     near = shapely.dwithin(floor, [obstacle.region() for obstacle in obstacles], ON_EDGE_MM)
     return tuple(obstacle for obstacle, is_near in zip(obstacles, near, strict=True) if is_near)
-
-
-def _start(
-    drawing: Survey, frame: Frame, options: ReadOptions
-) -> tuple[Point | None, tuple[Finding, ...]]:
-    """The start that the user gives or the drawing marks, and what is to be said about it."""
-    marks = [
-        place
-        for entity in drawing.document.modelspace()
-        if isinstance(entity, DXFGraphic) and entity.dxf.layer.upper() == START_LAYER
-        for place in _places(entity)
-    ]
-    if options.start is not None:
-        return rounded_spot(*frame.to_local_mm(options.start).tolist()), ()
-    if not marks:
-        return None, ()
-    start_mm = rounded_spot(*frame.to_local_mm(marks[0]).tolist())
-    if len(marks) == 1:
-        return start_mm, ()
-    return start_mm, (
-        Finding(
-            "start-ambiguous",
-            f"{len(marks)} marks on layer {START_LAYER}: the first one is used",
-            "leave one, or give --start",
-            layer=START_LAYER,
-        ),
-    )
-
-
-def _places(entity: DXFEntity) -> list[Point]:
-    """Where a mark is, in drawing units."""
-    if isinstance(entity, PointEntity):
-        place = entity.dxf.location
-    elif isinstance(entity, CircleEntity):
-        place = entity.ocs().to_wcs(entity.dxf.center)
-    elif isinstance(entity, Insert):
-        place = entity.ocs().to_wcs(entity.dxf.insert)
-    else:
-        return []
-    return [(Vec3(place).x, Vec3(place).y)]

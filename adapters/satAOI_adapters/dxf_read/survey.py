@@ -37,6 +37,7 @@ from satAOI_adapters.dxf_read.unread import (
 )
 from satAOI_adapters.dxf_read.xrefs import xrefs_in
 from satAOI_adapters.layers import Certainty, LayerTable, Meaning, layer_table
+from satAOI_adapters.wording import are, counted
 from satAOI_geo.errors import DrawingError, EmptyPlanError, UnitError
 from satAOI_geo.plan import Finding, Frame, Source
 
@@ -223,7 +224,7 @@ def survey(path: Path, options: ReadOptions) -> Survey:
         noticed=(
             *opened.findings,
             *expansion.findings,
-            *_hidden(expansion.hidden),
+            *_hidden(expansion),
             *xref_findings(expansion.missing, table),
             *foreign_findings(foreign),
             *strays,
@@ -316,9 +317,15 @@ def _empty(name: str, expansion: Expansion) -> EmptyPlanError:
 def _what_else(expansion: Expansion) -> str:
     """What a drawing without linework does hold."""
     if expansion.hidden:
+        count = sum(expansion.hidden.values())
         return (
-            f"{sum(expansion.hidden.values())} entities are on layers that are off or frozen: "
-            "switch these on or give --include-hidden"
+            f"{counted(count, 'entity', 'entities')} {are(count)} on layers that are off or "
+            "frozen: switch these on or give --include-hidden"
+        )
+    if expansion.invisible:
+        return (
+            f"{counted(sum(expansion.invisible.values()), 'entity', 'entities')} in it cannot be "
+            "seen: make them visible in the drawing"
         )
     kinds = Counter(placed.kind for placed in expansion.placed)
     counts = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common(LISTED))
@@ -329,13 +336,26 @@ def _what_else(expansion: Expansion) -> str:
     return "it is empty: check that it was saved from the right file"
 
 
-def _hidden(hidden: Counter[str]) -> Iterable[Finding]:
-    for layer, count in hidden.items():
-        if layer.upper().startswith(OWN_PREFIX):
-            continue
-        yield Finding(
+def _hidden(expansion: Expansion) -> Iterable[Finding]:
+    """What is not shown, and so not read, by layer."""
+    for counts, code, why, remedy in (
+        (
+            expansion.hidden,
             "layer-hidden",
-            f"{count} entities on layer '{layer}' are not read: frozen, off or invisible",
+            "the layer is frozen or off",
             "thaw the layer or give --include-hidden if they are on the floor",
-            layer=layer,
-        )
+        ),
+        (
+            expansion.invisible,
+            "entity-invisible",
+            "invisible themselves",
+            "make them visible in the drawing if they are on the floor",
+        ),
+    ):
+        for layer, count in counts.items():
+            if not layer.upper().startswith(OWN_PREFIX):
+                message = (
+                    f"{counted(count, 'entity', 'entities')} on layer '{layer}' {are(count)} not "
+                    f"read: {why}"
+                )
+                yield Finding(code, message, remedy, layer=layer)

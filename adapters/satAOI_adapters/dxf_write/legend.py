@@ -1,6 +1,5 @@
 """What the note says: the legend and the figures of a run, row by row."""
 
-import math
 from collections import Counter, defaultdict
 from dataclasses import dataclass
 from pathlib import PurePath
@@ -17,6 +16,7 @@ from satAOI_adapters.dxf_write.layers import (
     ZONE,
     Style,
 )
+from satAOI_adapters.wording import coordinate
 from satAOI_geo.pipeline import Result
 from satAOI_geo.plan import Frame, Kind
 from satAOI_geo.reasons import Reason
@@ -75,9 +75,8 @@ def note_rows(result: Result) -> list[Row]:
 
 def point_in_words(at_mm: tuple[float, float], mm_per_unit: float, unit: str) -> str:
     """A point of the drawing in its own unit, to a tenth of a millimetre and no more digits."""
-    digits = max(0, 1 + round(math.log10(mm_per_unit)))
-    x, y = (round(mm / mm_per_unit, digits) for mm in at_mm)
-    return f"{x:.12g}, {y:.12g} {unit}"
+    x, y = (coordinate(mm / mm_per_unit, mm_per_unit) for mm in at_mm)
+    return f"{x}, {y} {unit}"
 
 
 def _area_rows(report: Report) -> list[Row]:

@@ -167,15 +167,25 @@ def storeys_of(
     entities = sorted(model.by_type("IfcBuildingStorey"), key=handle_of)
     placed_mm = [_placed_mm(storey, mm, flaw_in) for storey in entities]
     stated_mm = [None if s.Elevation is None else s.Elevation * mm for s in entities]
+    bases_mm = [_base_mm(storey, mm) for storey in entities]
     findings: list[Finding] = []
     if _all_alike(placed_mm) and not _all_alike(stated_mm):
         findings.append(_UNPLACED)
-        placed_mm = stated_mm
+        placed_mm = [
+            None if stated is None else base + stated
+            for base, stated in zip(bases_mm, stated_mm, strict=True)
+        ]
     counts = _counts(model)
     found = []
-    for entity, height_mm, attribute_mm in zip(entities, placed_mm, stated_mm, strict=True):
+    for entity, height_mm, attribute_mm, base_mm in zip(
+        entities, placed_mm, stated_mm, bases_mm, strict=True
+    ):
         elevation_mm = height_mm if height_mm is not None else attribute_mm or 0.0
-        if attribute_mm is not None and abs(attribute_mm - elevation_mm) > SAME_HEIGHT_MM:
+        # it counts from the building's own height; some programs state that of the world
+        heights_mm = (elevation_mm, elevation_mm - base_mm)
+        if attribute_mm is not None and not any(
+            abs(attribute_mm - height) <= SAME_HEIGHT_MM for height in heights_mm
+        ):
             findings.append(_contradiction(entity, attribute_mm, elevation_mm))
         found.append((elevation_mm, entity, attribute_mm))
     found.sort(key=lambda storey: storey[0])
@@ -231,6 +241,12 @@ def _placed_mm(
             handle=handle_of(storey),
         )
     return height_mm
+
+
+def _base_mm(storey: entity_instance, mm: float) -> float:
+    """Height of what a storey is placed in, which its Elevation counts from."""
+    within = storey.ObjectPlacement and storey.ObjectPlacement.PlacementRelTo
+    return float(world_matrix(within, mm)[2, 3]) if within else 0.0
 
 
 def _all_alike(heights_mm: list[float | None]) -> bool:

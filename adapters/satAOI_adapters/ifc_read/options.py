@@ -1,7 +1,10 @@
 """What a user can choose when a storey of an IFC model is read."""
 
+import math
 from dataclasses import dataclass
 from typing import Final
+
+from satAOI_geo.errors import InputError
 
 BAND_MM: Final = 1200.0
 """Height of the robot: what begins above it does not stand in its way."""
@@ -21,6 +24,9 @@ class IfcOptions:
         without_classes: IFC classes that do not block although they do by default.
         timeout_s: Longest time the geometry may take.
         memory_mb: Most memory the geometry may take; None for an allowance by the file's size.
+
+    Raises:
+        InputError: If the band or the floor's height is not a usable number.
     """
 
     storey: str | None = None
@@ -31,3 +37,9 @@ class IfcOptions:
     without_classes: tuple[str, ...] = ()
     timeout_s: float = 600.0
     memory_mb: int | None = None
+
+    def __post_init__(self) -> None:
+        if not 0 < self.band_mm < math.inf:
+            raise InputError(f"the band is {self.band_mm:g} mm high; give a height above 0")
+        if self.floor_z is not None and not math.isfinite(self.floor_z):
+            raise InputError(f"the floor's height is {self.floor_z:g}; give a number")
