@@ -10,7 +10,8 @@ from ezdxf.document import Drawing
 from ezdxf.math import Matrix44
 
 from satAOI_adapters.dxf_read.fills import HATCHES
-from satAOI_adapters.layers import Meaning, layer_table
+from satAOI_adapters.layers import layer_table
+from satAOI_adapters.meanings import Meaning
 from satAOI_geo.plan import FloorPlan, Kind
 from tests.drawings import codes, drawing, plan_of, rectangle, standing
 

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from satAOI_adapters.layers import BUILT_IN, Certainty, Meaning, is_like, layer_table
+from satAOI_adapters.layers import BUILT_IN, is_like, layer_table
+from satAOI_adapters.meanings import Certainty, Meaning
 from satAOI_geo.errors import InputError
 
 

@@ -11,7 +11,7 @@ from satAOI_adapters import inspect_plan, inspect_write, picture_writer_of, read
 from satAOI_adapters.dxf_read import ReadOptions
 from satAOI_adapters.dxf_read.inspection import Inspection, LayerFigures
 from satAOI_adapters.files import json_of
-from satAOI_adapters.layers import Certainty, Meaning
+from satAOI_adapters.meanings import Certainty, Meaning
 from satAOI_geo import DrawingError, EmptyPlanError, UnitError
 from tests.drawings import drawing as drawing_in_mm
 from tests.drawings import rectangle

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from satAOI_adapters import inspect_plan, layers_write, read_plan
 from satAOI_adapters.dxf_read import ReadOptions
-from satAOI_adapters.layers import LayerMap, LayerTable, Meaning, Named, layer_table
+from satAOI_adapters.layers import LayerTable, layer_table
+from satAOI_adapters.meanings import LayerMap, Meaning, Named
 from satAOI_geo import InputError
 from tests.drawings import drawing, rectangle
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from satAOI_adapters.ifc_read import IfcOptions
     from satAOI_adapters.ifc_read import Inspection as IfcInspection
     from satAOI_adapters.inspected import Inspected
-    from satAOI_adapters.layers import LayerMap
+    from satAOI_adapters.meanings import LayerMap
     from satAOI_geo.pipeline import Result
     from satAOI_geo.plan import FloorPlan
     from satAOI_geo.progress import Progress

@@ -9,7 +9,7 @@ from shapely.geometry import LineString
 from satAOI_geo.plan import Finding, FloorPlan, Frame, Kind, Source
 
 if TYPE_CHECKING:
-    from satAOI_adapters.layers import LayerMap
+    from satAOI_adapters.meanings import LayerMap
     from satAOI_geo.errors import SatAoiError
 
 

@@ -2,7 +2,7 @@
 
 from pydantic import BaseModel, ConfigDict
 
-from satAOI_adapters.layers import Meaning
+from satAOI_adapters.meanings import Meaning
 
 
 class LayersFile(BaseModel):

@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import Final
 
 from satAOI_adapters.files import written_whole
-from satAOI_adapters.layers import EXACT, Certainty, LayerMap, Meaning, Named, Verdict
+from satAOI_adapters.layers import EXACT
+from satAOI_adapters.meanings import Certainty, LayerMap, Meaning, Named, Verdict
 from satAOI_adapters.settings_read import toml_string
 
 HEAD: Final = """\

@@ -27,7 +27,7 @@ from satAOI_adapters.dxf_read.lookalikes import BOUNDING, look_like_walls
 from satAOI_adapters.dxf_read.meaning import Seen
 from satAOI_adapters.dxf_read.plans import rough_lines
 from satAOI_adapters.dxf_read.shapes import GeometryArray
-from satAOI_adapters.layers import KINDS, Meaning, Verdict
+from satAOI_adapters.meanings import KINDS, Meaning, Verdict
 from satAOI_geo.plan import Finding, Region
 
 MOST: Final = 2 / 3

@@ -15,7 +15,7 @@ from ezdxf.entities import Linetype
 from satAOI_adapters.dxf_read.expand import BY_PARENT, Placed
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.meaning import Seen
-from satAOI_adapters.layers import Certainty, Meaning
+from satAOI_adapters.meanings import Certainty, Meaning
 from satAOI_adapters.wording import are, counted
 from satAOI_geo.plan import Finding, Frame
 

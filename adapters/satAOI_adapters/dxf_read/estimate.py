@@ -16,7 +16,7 @@ from shapely.geometry import LineString
 
 from satAOI_adapters.dxf_read.curves import Arc, Line, Path
 from satAOI_adapters.dxf_read.features import Feature
-from satAOI_adapters.layers import Meaning
+from satAOI_adapters.meanings import Meaning
 from satAOI_geo.plan import FloatArray
 from satAOI_geo.units import MM_PER_UNIT
 

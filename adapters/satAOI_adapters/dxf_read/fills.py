@@ -31,7 +31,7 @@ from satAOI_adapters.dxf_read.shapes import TIE_MM, GeometryArray, is_thin, midd
 from satAOI_adapters.dxf_read.survey import Survey, drawn_by
 from satAOI_adapters.dxf_read.swings import LEAF_SLACK_MM, swings
 from satAOI_adapters.dxf_read.terms import Terms
-from satAOI_adapters.layers import KINDS, Meaning
+from satAOI_adapters.meanings import KINDS, Meaning
 from satAOI_adapters.wording import are, counted
 from satAOI_geo.plan import Finding, Frame, Kind, Obstacle
 

@@ -36,7 +36,7 @@ from satAOI_adapters.dxf_read.meaning import Seen
 from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.plans import n_swings, rough_lines
 from satAOI_adapters.dxf_read.shapes import GeometryArray, is_thin
-from satAOI_adapters.layers import KINDS, Certainty, Meaning, Verdict
+from satAOI_adapters.meanings import KINDS, Certainty, Meaning, Verdict
 from satAOI_adapters.wording import counted
 from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray, polygons_in
 

@@ -32,7 +32,7 @@ from satAOI_adapters.dxf_read.openings import Span, as_one, middles, shut
 from satAOI_adapters.dxf_read.plans import Drawn
 from satAOI_adapters.dxf_read.shapes import middle_line
 from satAOI_adapters.dxf_read.swings import LEAF_SLACK_MM, LEAST_LEAF_MM, parted, swings
-from satAOI_adapters.layers import Meaning
+from satAOI_adapters.meanings import Meaning
 from satAOI_adapters.wording import counted
 from satAOI_geo.plan import Finding, Frame, Obstacle, Region
 

@@ -18,17 +18,8 @@ from satAOI_adapters.dxf_read.reading import plan_of
 from satAOI_adapters.dxf_read.shapes import middle_line, shapes_of
 from satAOI_adapters.dxf_read.survey import Survey, drawn_by, survey
 from satAOI_adapters.inspected import Bounds, Inspected, Sketch
-from satAOI_adapters.layers import (
-    KINDS,
-    Certainty,
-    LayerMap,
-    LayerTable,
-    Meaning,
-    Named,
-    Verdict,
-    layer_table,
-    without_xref_prefix,
-)
+from satAOI_adapters.layers import LayerTable, layer_table, without_xref_prefix
+from satAOI_adapters.meanings import KINDS, Certainty, LayerMap, Meaning, Named, Verdict
 from satAOI_geo.errors import SatAoiError, UnitError
 from satAOI_geo.plan import Finding, FloorPlan, Frame, Kind, Source, geometry_of
 

@@ -25,7 +25,7 @@ from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.linework import WALL_MM
 from satAOI_adapters.dxf_read.meaning import Seen
 from satAOI_adapters.dxf_read.shapes import GeometryArray, is_thin
-from satAOI_adapters.layers import Meaning, Verdict
+from satAOI_adapters.meanings import Meaning, Verdict
 from satAOI_geo.plan import BoolArray, Finding, FloatArray
 
 MANY: Final = 20

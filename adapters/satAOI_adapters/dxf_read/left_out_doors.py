@@ -15,7 +15,7 @@ from satAOI_adapters.dxf_read.meaning import Seen
 from satAOI_adapters.dxf_read.openings import over_whole_walls
 from satAOI_adapters.dxf_read.swings import may_be_swing, swings
 from satAOI_adapters.dxf_read.terms import Terms
-from satAOI_adapters.layers import Certainty, Meaning
+from satAOI_adapters.meanings import Certainty, Meaning
 from satAOI_adapters.wording import counted
 from satAOI_geo.plan import Finding, Kind, Obstacle
 

@@ -14,7 +14,7 @@ from typing import Final
 from satAOI_adapters.dxf_read.estimate import WALLS, beside
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.meaning import Seen
-from satAOI_adapters.layers import Meaning, Verdict
+from satAOI_adapters.meanings import Meaning, Verdict
 from satAOI_geo.plan import Finding
 
 MOSTLY: Final = 0.5

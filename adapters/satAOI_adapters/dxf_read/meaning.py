@@ -7,7 +7,8 @@ from typing import Final
 from ezdxf.entities import LWPolyline, Polyline
 
 from satAOI_adapters.dxf_read.expand import Placed
-from satAOI_adapters.layers import KINDS, Certainty, LayerTable, Meaning, Verdict
+from satAOI_adapters.layers import LayerTable
+from satAOI_adapters.meanings import KINDS, Certainty, Meaning, Verdict
 from satAOI_geo.plan import Finding
 
 LISTED: Final = 5

@@ -25,7 +25,7 @@ from satAOI_adapters.dxf_read.shapes import TIE_MM
 from satAOI_adapters.dxf_read.terms import Terms
 from satAOI_adapters.dxf_read.unclassified import SAY_WHAT
 from satAOI_adapters.dxf_read.windows import windows
-from satAOI_adapters.layers import Meaning
+from satAOI_adapters.meanings import Meaning
 from satAOI_adapters.wording import are, counted
 from satAOI_geo.plan import BoolArray, Finding, FloatArray, IntArray
 

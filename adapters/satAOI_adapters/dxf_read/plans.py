@@ -21,7 +21,7 @@ from satAOI_adapters.dxf_read.curves import Arc, Point
 from satAOI_adapters.dxf_read.features import Feature
 from satAOI_adapters.dxf_read.groups import linked
 from satAOI_adapters.dxf_read.shapes import GeometryArray, is_thin
-from satAOI_adapters.layers import KINDS, Meaning
+from satAOI_adapters.meanings import KINDS, Meaning
 from satAOI_adapters.wording import coordinate
 from satAOI_geo.errors import InputError
 from satAOI_geo.plan import Finding, Frame, polygons_in

@@ -41,7 +41,7 @@ from satAOI_adapters.dxf_read.trenches import trenches
 from satAOI_adapters.dxf_read.unclassified import LEFT_OUT, ROOM, unclassified
 from satAOI_adapters.dxf_read.units import hold_size
 from satAOI_adapters.dxf_read.windows import window_findings, windows
-from satAOI_adapters.layers import KINDS, Meaning
+from satAOI_adapters.meanings import KINDS, Meaning
 from satAOI_geo.errors import InputError
 from satAOI_geo.plan import (
     Finding,

@@ -36,7 +36,8 @@ from satAOI_adapters.dxf_read.unread import (
     xref_findings,
 )
 from satAOI_adapters.dxf_read.xrefs import xrefs_in
-from satAOI_adapters.layers import Certainty, LayerTable, Meaning, layer_table
+from satAOI_adapters.layers import LayerTable, layer_table
+from satAOI_adapters.meanings import Certainty, Meaning
 from satAOI_adapters.wording import are, counted
 from satAOI_geo.errors import DrawingError, EmptyPlanError, UnitError
 from satAOI_geo.plan import Finding, Frame, Source

@@ -23,7 +23,7 @@ from satAOI_adapters.dxf_read.options import CLOSE_GAPS_MM
 from satAOI_adapters.dxf_read.plans import Drawn
 from satAOI_adapters.dxf_read.shapes import GeometryArray, band, is_thin, middle_line
 from satAOI_adapters.dxf_read.terms import Terms
-from satAOI_adapters.layers import KINDS
+from satAOI_adapters.meanings import KINDS
 from satAOI_adapters.wording import are, counted
 from satAOI_geo.plan import BoolArray, Finding, FloatArray, Kind, Obstacle, Region, polygons_in
 

@@ -6,7 +6,8 @@ from typing import Final
 
 from satAOI_adapters.dxf_read.entities import DRAWN, NO_LINEWORK
 from satAOI_adapters.dxf_read.expand import Missing, Placed
-from satAOI_adapters.layers import KINDS, LayerTable, Meaning
+from satAOI_adapters.layers import LayerTable
+from satAOI_adapters.meanings import KINDS, Meaning
 from satAOI_geo.errors import DrawingError
 from satAOI_geo.plan import Finding
 
