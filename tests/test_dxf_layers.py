@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 from satAOI_adapters.layers import BUILT_IN, is_like, layer_table
 from satAOI_adapters.meanings import Certainty, Meaning
 from satAOI_geo.errors import InputError
+from satAOI_geo.plan import Kind
+from tests.drawings import drawing, plan_of, rectangle, standing
 
 
 @pytest.mark.parametrize(
@@ -509,3 +511,15 @@ def test_faulty_file_is_refused_with_the_key_at_fault(
 def test_missing_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"nowhere\.toml"):
         layer_table(tmp_path / "nowhere.toml")
+
+
+def test_an_exact_name_that_no_layer_has_is_said(tmp_path: Path) -> None:
+    document = drawing()
+    rectangle(document.modelspace(), 1000, 1000, 2000, 2000, layer="Zeug")
+    own = tmp_path / "own.toml"
+    own.write_text('[layers]\nwall = ["=Zuge", "=Zeug", "NOBODY*"]\n', encoding="utf-8")
+    plan = plan_of(document, tmp_path, layers=own)
+    assert {obstacle.kind for obstacle in standing(plan, "Zeug")} == {Kind.WALL}
+    (said,) = [finding for finding in plan.findings if finding.code == "layer-unknown"]
+    # patterns are for many drawings, of which each has some of the layers
+    assert said.message.endswith("a name that the layer file gives: 'Zuge'")

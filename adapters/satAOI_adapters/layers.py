@@ -131,6 +131,16 @@ class LayerTable:
         """What a layer of this name means; prefixes of external references are dropped."""
         return _first(self.layers, without_xref_prefix(name))
 
+    def names_not_among(self, layers: Iterable[str]) -> list[str]:
+        """Names that the user's file gives letter for letter, and that none of some layers has."""
+        there = {own for name in layers for own in (name, without_xref_prefix(name))}
+        given = [rule for rule in self.layers if rule.given]
+        names = [
+            *(rule.patterns.names for rule in given),
+            *(rule.exceptions.names for rule in given),
+        ]
+        return [name for each in names for name in each if name not in there]
+
     def of_fill(self, name: str) -> Verdict:
         """What the fills on a layer of this name fill: a layer of patterns for walls, walls."""
         telling = tuple(rule for rule in self.layers if rule.meaning is not Meaning.IGNORE)

@@ -226,6 +226,7 @@ def survey(path: Path, options: ReadOptions) -> Survey:
             *opened.findings,
             *expansion.findings,
             *_hidden(expansion),
+            *_mistaken(table, opened.document, expansion),
             *xref_findings(expansion.missing, table),
             *foreign_findings(foreign),
             *strays,
@@ -335,6 +336,25 @@ def _what_else(expansion: Expansion) -> str:
     if kinds:
         return f"it holds {counts}: save the plan as lines and polylines"
     return "it is empty: check that it was saved from the right file"
+
+
+def _mistaken(table: LayerTable, document: Drawing, expansion: Expansion) -> Iterator[Finding]:
+    """Names in the user's layer file that no layer has: most often they are mistyped."""
+    # a layer need not be in the drawing's table to have something on it
+    layers = {layer.dxf.name for layer in document.layers}
+    layers |= {placed.layer for placed in expansion.placed}
+    layers |= {reference.layer for reference in expansion.missing}
+    layers |= {*expansion.hidden, *expansion.invisible}
+    names = table.names_not_among(layers)
+    if names:
+        listed = ", ".join(f"'{name}'" for name in names[:LISTED])
+        rest = len(names) - LISTED
+        more = f" and {counted(rest, 'other')}" if rest > 0 else ""
+        yield Finding(
+            "layer-unknown",
+            f"no layer of the drawing has a name that the layer file gives: {listed}{more}",
+            "correct it there; 'inspect' lists the layers",
+        )
 
 
 def _hidden(expansion: Expansion) -> Iterable[Finding]:
