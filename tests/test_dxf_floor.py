@@ -540,3 +540,15 @@ def test_outline_on_a_nameless_layer_counts_for_nothing_where_walls_or_a_floor_a
     plan = plan_of(document, tmp_path)
     assert floor_of(plan).equals(box(2000, 2000, 22_000, 14_000))
     assert "outline-as-walls" not in codes(plan)
+
+
+@pytest.mark.parametrize("thick_mm", [300.0, 800.0, 1900.0])
+def test_outer_faces_of_thick_walls_lie_beside_no_floor(thick_mm: float, tmp_path: Path) -> None:
+    document = drawing(floor=False)
+    hatch = document.modelspace().add_hatch(dxfattribs={"layer": "WALL"})
+    outer = box(0, 0, 20_000, 12_000).difference(box(7750, 6000, 12_250, 12_000))
+    for face in (outer, outer.buffer(-thick_mm, join_style="mitre")):
+        hatch.paths.add_polyline_path(list(face.exterior.coords)[:-1])
+    plan = plan_of(document, tmp_path)
+    assert plan.floor.area == pytest.approx(outer.area)
+    assert "walls-left-out" not in codes(plan)

@@ -4,6 +4,7 @@ Points along the walls are triangulated. From outside, the triangles are flooded
 than an opening; what stays dry is enclosed, and the sides at the water's edge close the openings.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -17,7 +18,7 @@ from shapely.geometry.base import BaseGeometry
 from satAOI_adapters.dxf_read.groups import linked
 from satAOI_adapters.dxf_read.linework import WALL_MM
 from satAOI_adapters.dxf_read.placement import LOCAL_DIGITS
-from satAOI_adapters.dxf_read.shapes import SAME_MM, GeometryArray, is_thin, rounded, tidy
+from satAOI_adapters.dxf_read.shapes import SAME_MM, TIE_MM, GeometryArray, is_thin, rounded, tidy
 from satAOI_geo.plan import BoolArray, FloatArray, IntArray, Region, polygons_in
 
 OPENING_MM: Final = 2500.0
@@ -28,6 +29,9 @@ OPENING_STEPS_MM: Final = (1000.0, 1500.0, 2000.0, OPENING_MM)
 
 GATE_STEPS_MM: Final = (4000.0, 6000.0, 8000.0)
 """Gates of halls are so wide; closed where the walls lie beside what narrower openings leave."""
+
+THICKEST_MM: Final = 2000.0
+"""Walls of old buildings and of bunkers are hardly thicker."""
 
 LEFT_OUT: Final = 1 / 4
 """Greatest share of the walls that may lie beside the floor: yards, sheds, a wall by itself."""
@@ -232,8 +236,22 @@ def _of(
         return Enclosed(region)
     rooms = shapely.union_all(parts)
     shapely.prepare(rooms)
-    is_beside = ~shapely.dwithin(rooms, shapely.points(samples), WALL_MM)
+    points = shapely.points(samples)
+    is_beside = ~shapely.dwithin(rooms, points, WALL_MM)
+    is_beside[is_beside] = ~_on_thick_walls(points[is_beside], filled, rooms)
     return Enclosed(region, _widest_opening(region.boundary, walls), float(is_beside.mean()))
+
+
+def _on_thick_walls(points: GeometryArray, filled: BaseGeometry, rooms: BaseGeometry) -> BoolArray:
+    """Which points lie on the far face of a wall at a room that is thicker than most."""
+    if not len(points):
+        return np.zeros(0, dtype=np.bool_)
+    core = filled.buffer(-WALL_MM / 2)
+    shapely.prepare(core)
+    # across a square corner it is as much farther as the square's diagonal is longer
+    near_core, near_room = math.sqrt(2) * np.array((WALL_MM / 2, THICKEST_MM)) + TIE_MM
+    is_thick = shapely.dwithin(core, points, near_core)
+    return np.asarray(is_thick & shapely.dwithin(rooms, points, near_room))
 
 
 def _widest_opening(rim: BaseGeometry, walls: BaseGeometry) -> LineString | None:
