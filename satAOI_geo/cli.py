@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Final, Unpack
 
 import rich_click as click
 
+from satAOI_adapters.exit_codes import DONE, FINDINGS
 from satAOI_geo import __version__
 from satAOI_geo.errors import InputError, NoRouteError
+from satAOI_geo.option_values import StartAt
 from satAOI_geo.options import (
     AT,
     BATCH,
@@ -40,7 +42,6 @@ from satAOI_geo.options import (
     Question,
     Reading,
     Sharing,
-    StartAt,
     handed_on,
     taking,
 )
@@ -66,12 +67,10 @@ if TYPE_CHECKING:
     from satAOI_geo.settings import Settings
     from satAOI_geo.start import StartMark
 
-DONE: Final = 0
-FINDINGS: Final = 1
-
 EPILOG: Final = (
     "Exit codes: 0 done; 1 findings, with --strict; 2 usage; 3 drawing unusable; "
-    "4 start blocked or nothing reachable; 5 a limit was reached; 130 interrupted."
+    "4 start blocked or nothing reachable; 5 a limit was reached; 130 interrupted; "
+    "128 + N ended by signal N."
 )
 
 BATCH_EPILOG: Final = (

@@ -1,5 +1,6 @@
 """Why a point of the plan is, or is not, in the area of interest: in one sentence."""
 
+import math
 from typing import Final
 
 import numpy as np
@@ -42,13 +43,16 @@ def _is_trowelled(result: Result, at_mm: tuple[float, float]) -> bool:
         if result.settings.connectivity == "disc"
         else search.pose.nodes(search.start.pose_label)
     )
-    iy, ix = ((np.array(at_mm[::-1]) - lattice.origin_mm[::-1]) // lattice.step_mm).astype(int)
-    rows, columns = lattice.around(slice(iy, iy + 1), slice(ix, ix + 1), disc_mm + CONTACT_MM)
-    near = np.argwhere(of_start.window(rows, columns).as_array())
-    x_mm = lattice.origin_mm[0] + (near[:, 1] + columns.start + 0.5) * lattice.step_mm
-    y_mm = lattice.origin_mm[1] + (near[:, 0] + rows.start + 0.5) * lattice.step_mm
-    away_mm = np.hypot(x_mm - at_mm[0], y_mm - at_mm[1])
-    return bool((away_mm <= disc_mm + CONTACT_MM).any())
+    node = lattice.nearest_node(*at_mm)
+    if node is None:
+        # on the edge of the floor, which the disc does not touch
+        return False
+    within_mm = disc_mm + CONTACT_MM
+    row, column = (slice(k, k + 1) for k in node)
+    rows, columns = lattice.around(row, column, within_mm)
+    window = lattice.window(rows, columns)
+    near = np.argwhere(of_start.window(rows, columns).as_array()).tolist()
+    return any(math.dist((window.x_mm(ix), window.y_mm(iy)), at_mm) <= within_mm for iy, ix in near)
 
 
 def _reason(patch: Patch) -> str:

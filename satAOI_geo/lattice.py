@@ -40,8 +40,8 @@ class Lattice:
         swings: The turns a2 of the vehicle against the arm, in whole directions, ascending.
         first_row: Which row of the lattice that this is a band of its row 0 is; y is counted from
             there, so that a node has the same coordinates in both to the last bit.
-        swings_all_round: Whether the last swing is beside the first: a range that lacks one
-            direction of a full turn has as many, and an end between them.
+        swings_all_round: Whether the last swing is beside the first, as in a full turn. A range
+            that lacks a few degrees of one may have as many swings, and ends between these two.
     """
 
     origin_mm: tuple[float, float]

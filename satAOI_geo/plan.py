@@ -81,7 +81,7 @@ def geometry_of(shape: Shape) -> Polygon | LineString:
 
 
 def core_of(shape: Shape) -> Polygon | LineString | Point:
-    """What a shape is all points within `radius_mm_of` it of: itself, or the centre of a circle."""
+    """What a shape reaches out from by `radius_mm_of`: the centre of a circle, else the shape."""
     return Point(shape.x_mm, shape.y_mm) if isinstance(shape, Circle) else shape
 
 

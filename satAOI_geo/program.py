@@ -7,18 +7,22 @@ from collections.abc import Sequence
 from typing import Final
 
 from satAOI_adapters import signals
+from satAOI_adapters.exit_codes import (
+    INTERRUPTED,
+    LIMIT_REACHED,
+    NO_START,
+    SIGNALLED,
+    UNUSABLE,
+    USAGE,
+)
 from satAOI_adapters.terminal import accept_any_text, say_error
 from satAOI_geo.errors import DrawingError, InputError, LimitError, SatAoiError, StartError
 
-USAGE: Final = 2
-SIGNALLED: Final = 128
-"""A process that signal N has ended has the exit code 128 + N, as in shells."""
-INTERRUPTED: Final = SIGNALLED + 2
 EXIT_CODES: Final[dict[type[SatAoiError], int]] = {
     InputError: USAGE,
-    DrawingError: 3,
-    StartError: 4,
-    LimitError: 5,
+    DrawingError: UNUSABLE,
+    StartError: NO_START,
+    LimitError: LIMIT_REACHED,
 }
 
 
@@ -36,7 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return USAGE
     except MemoryError:
         say_error("not enough memory for this plan; give a coarser --step or a smaller --region")
-        return EXIT_CODES[LimitError]
+        return LIMIT_REACHED
     except KeyboardInterrupt:
         say_error("interrupted")
         return INTERRUPTED

@@ -179,12 +179,13 @@ class Band:
         Raises:
             LimitError: If there is no room for it.
         """
-        columns = np.stack((self.runs.begin, self.runs.end, self.labels))
-        if not columns.size:
+        columns = [self.runs.begin, self.runs.end, self.labels]
+        if not self.labels.size:
             return self
         try:
             with TemporaryFile() as file:
-                file.write(columns.data)
+                for column in columns:
+                    file.write(np.ascontiguousarray(column).data)
                 file.flush()
                 pages = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
         except OSError as error:
@@ -193,10 +194,10 @@ class Band:
                 f"files: {error.strerror or error}; name another one by TMPDIR, or give more "
                 "--memory",
                 limit="scratch",
-                value=columns.nbytes,
+                value=sum(column.nbytes for column in columns),
                 allowed=0,
             ) from error
-        begin, end, labels = np.frombuffer(pages, dtype=columns.dtype).reshape(columns.shape)
+        begin, end, labels = np.frombuffer(pages, dtype=np.int32).reshape(len(columns), -1)
         runs = replace(self.runs, begin=begin, end=end)
         return replace(self, runs=runs, labels=labels, pages=pages)
 

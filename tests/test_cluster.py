@@ -1,6 +1,8 @@
 """Work shared out: the same answers whoever does it, and whatever happens to them."""
 
+import asyncio
 import itertools
+import logging
 import os
 import signal
 import socket
@@ -36,6 +38,33 @@ def two_workers() -> Iterator[Dask]:
         workers(n_workers=2) as crew,
     ):
         yield crew
+
+
+@contextmanager
+def served() -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
+    """A scheduler with a worker, each in a process of its own, and its address."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+    port = address.rpartition(":")[2]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    command = [sys.executable, "-m"]
+    local = ["--host", "127.0.0.1", "--no-dashboard"]
+    paths = os.pathsep.join(filter(None, sys.path))
+    server = subprocess.Popen(
+        [*command, "distributed.cli.dask_scheduler", *local, "--port", port], **quiet
+    )
+    worker = subprocess.Popen(
+        [*command, "distributed.cli.dask_worker", address, *local, "--no-nanny"],
+        env={**os.environ, "PYTHONPATH": paths},
+        **quiet,
+    )
+    try:
+        yield address, server
+    finally:
+        for process in (worker, server):
+            process.kill()
+            process.wait()
 
 
 @pytest.fixture(scope="module")
@@ -141,40 +170,28 @@ def test_the_loss_of_all_workers_is_an_error(monkeypatch: pytest.MonkeyPatch) ->
             list(outcomes)
 
 
+def test_a_scheduler_is_reached_where_a_loop_runs_as_in_a_notebook(scheduler: str) -> None:
+    async def in_a_cell() -> list[int]:
+        with workers(scheduler=scheduler) as crew:
+            return [outcome.value() for outcome in crew.outcomes(jobs.squared, [3])]
+
+    assert asyncio.run(in_a_cell()) == [9]
+
+
+def test_dask_logs_again_as_it_did_once_its_scheduler_is_left(scheduler: str) -> None:
+    before = logging.getLogger("distributed.client").level
+    with workers(scheduler=scheduler):
+        assert not logging.getLogger("distributed.client").isEnabledFor(logging.ERROR)
+    assert logging.getLogger("distributed.client").level == before
+
+
 def test_the_loss_of_the_scheduler_is_an_error() -> None:
-    with _served() as (address, server), workers(scheduler=address) as working:
+    with served() as (address, server), workers(scheduler=address) as working:
         outcomes = working.outcomes(jobs.squared_later, range(3))
         assert next(outcomes).value() == 0
         server.kill()
         with pytest.raises(LimitError, match="or their scheduler is"):
             list(outcomes)
-
-
-@contextmanager
-def _served() -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
-    """A scheduler with a worker, each in a process of its own, and its address."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
-    port = address.rpartition(":")[2]
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    command = [sys.executable, "-m"]
-    local = ["--host", "127.0.0.1", "--no-dashboard"]
-    paths = os.pathsep.join(filter(None, sys.path))
-    server = subprocess.Popen(
-        [*command, "distributed.cli.dask_scheduler", *local, "--port", port], **quiet
-    )
-    worker = subprocess.Popen(
-        [*command, "distributed.cli.dask_worker", address, *local, "--no-nanny"],
-        env={**os.environ, "PYTHONPATH": paths},
-        **quiet,
-    )
-    try:
-        yield address, server
-    finally:
-        for process in (worker, server):
-            process.kill()
-            process.wait()
 
 
 def test_nothing_can_be_reached_from_other_machines(crew: Dask) -> None:

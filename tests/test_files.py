@@ -62,9 +62,9 @@ def test_the_error_told_is_that_of_writing_not_of_tidying_up(
 
     for action in ("open", "unlink"):
         monkeypatch.setattr(Path, action, refuse)
-    with pytest.raises(InputError, match=r"cannot write '.*x\.dxf': Read-only file system"):  # noqa: SIM117
-        with written_whole(tmp_path / "x.dxf"):
-            pass
+    complaint = r"cannot write '.*x\.dxf': Read-only file system"
+    with pytest.raises(InputError, match=complaint), written_whole(tmp_path / "x.dxf"):
+        pass
 
 
 def test_an_input_is_never_written_over_under_any_of_its_names(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import satAOI_geo
+from satAOI_adapters.exit_codes import DONE, FINDINGS, INTERRUPTED
 from satAOI_geo.cli import commands
 from satAOI_geo.program import EXIT_CODES
 
@@ -119,7 +120,7 @@ def test_the_readme_names_every_option_and_every_exit_code() -> None:
         opt for command in commands.commands.values() for p in command.params for opt in p.opts
     }
     assert {opt for opt in options if opt.startswith("--") and f"`{opt}" not in readme} == set()
-    for code in {0, 1, 130, *EXIT_CODES.values()}:
+    for code in {DONE, FINDINGS, INTERRUPTED, *EXIT_CODES.values()}:
         assert re.search(rf"^\| {code} \|", readme, re.MULTILINE)
 
 

@@ -59,6 +59,7 @@ def test_extent_of_whole_cells_has_as_many_nodes(left: int, n_cells: int, step_m
     assert Lattice.over(bounds_mm, PROTOTYPE, step_mm=step_mm).shape == (1, n_cells)
 
 
+# a number next to 0, divided by the step, is 0 itself
 @given(st.floats(-5, 405, allow_subnormal=False), st.floats(-5, 305, allow_subnormal=False))
 def test_nearest_node_is_the_one_whose_cell_holds_the_point(x_mm: float, y_mm: float) -> None:
     lattice = lattice_of(n_rows=30, n_columns=40)

@@ -23,6 +23,7 @@ import satAOI_geo
 from satAOI_adapters import lifeline
 from satAOI_adapters.batch_results import SUMMARIES, Row, printable, save
 from satAOI_adapters.cluster import Outcome, Workers
+from satAOI_adapters.exit_codes import DONE, LIMIT_REACHED, SIGNALLED, USAGE
 from satAOI_geo.errors import InputError, LimitError
 
 PROGRAM: Final = f"""
@@ -33,16 +34,11 @@ end_with_the_caller()
 sys.exit(main())
 """
 
-DONE: Final = 0
 FAILED: Final = 1
-USAGE: Final = 2
-LIMIT_REACHED: Final = 5
+"""The exit code of a worker that came to nothing, that of a traceback."""
 
 RESULTS: Final = (".dxf", ".json")
 """What the names of a run's drawing and of its report end in."""
-
-SIGNALLED: Final = 128
-"""A process that signal N has ended has the exit code 128 + N, as in shells."""
 
 
 @dataclass(frozen=True, slots=True)

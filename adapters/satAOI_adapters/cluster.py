@@ -16,7 +16,7 @@ import logging
 import signal
 import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
@@ -286,24 +286,39 @@ def _connected(scheduler: str) -> Iterator["Client"]:
     """
     from distributed import Client
 
-    # what is lost is told once, by the program; Dask gives its parts levels of their own
-    for name in ("distributed", "distributed.client", "distributed.core"):
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+    with _dask_silent():
+        try:
+            # in a thread of its own, since a notebook has a loop in this one
+            with ThreadPoolExecutor(max_workers=1) as beside:
+                beside.submit(asyncio.run, _shake_hands(scheduler)).result()
+            client = Client(scheduler, timeout=CONNECT_S)
+        except (OSError, ValueError, TypeError, ImportError) as error:
+            raise InputError(
+                f"no Dask scheduler answers at '{scheduler}'; give its address, for example "
+                "tcp://192.168.1.20:8786"
+            ) from error
+        with client:
+            _refuse_unfit_workers(client, scheduler)
+            yield client
+
+
+@contextmanager
+def _dask_silent() -> Iterator[None]:
+    """Let Dask log nothing: what is lost is told once, by the program."""
+    # these have levels of their own
+    loggers = [logging.getLogger(f"distributed{part}") for part in ("", ".client", ".core")]
+    before = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
     try:
-        asyncio.run(_refuse_what_does_not_answer(scheduler))
-        client = Client(scheduler, timeout=CONNECT_S)
-    except (OSError, ValueError, TypeError, ImportError) as error:
-        raise InputError(
-            f"no Dask scheduler answers at '{scheduler}'; give its address, for example "
-            "tcp://192.168.1.20:8786"
-        ) from error
-    with client:
-        _refuse_unfit_workers(client, scheduler)
-        yield client
+        yield
+    finally:
+        for logger, level in zip(loggers, before, strict=True):
+            logger.setLevel(level)
 
 
-async def _refuse_what_does_not_answer(scheduler: str) -> None:
-    """Shake hands once: a client would wait for ever for those of a server that is no scheduler.
+async def _shake_hands(scheduler: str) -> None:
+    """Connect once: a client would wait for ever for the hand of a server that is no scheduler.
 
     Raises:
         TimeoutError: If nothing answers as one.

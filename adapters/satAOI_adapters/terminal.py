@@ -22,14 +22,18 @@ def accept_any_text() -> None:
     A name may hold characters the terminal's encoding lacks, or bytes that are no text at all. And
     whoever starts the program may have closed what it prints to.
     """
-    # both are open as long as the program runs
-    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115  loads less
-    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115  the same
+    sys.stdout = sys.stdout or _nowhere()
+    sys.stderr = sys.stderr or _nowhere()
     for stream in (sys.stdout, sys.stderr):
         # a stream replaced by a caller need not be a text file
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
             reconfigure(errors="backslashreplace")
+
+
+def _nowhere() -> TextIO:
+    """A stream for the rest of the run whose text nobody reads."""
+    return open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123  pathlib is slow to load, and nobody closes it
 
 
 def say_error(message: str) -> None:
